@@ -1,0 +1,36 @@
+# Flags that every target of the project shares.
+add_library(keyhole_options INTERFACE)
+target_compile_options(keyhole_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+# sqrt must not set errno: the inner loop takes many square roots.
+target_compile_options(keyhole_options INTERFACE -fno-math-errno)
+if(KEYHOLE_WERROR)
+  target_compile_options(keyhole_options INTERFACE -Werror)
+endif()
+if(KEYHOLE_NATIVE)
+  target_compile_options(keyhole_options INTERFACE -march=native)
+endif()
+if(KEYHOLE_SANITIZE)
+  target_compile_options(keyhole_options INTERFACE -fsanitize=${KEYHOLE_SANITIZE} -fno-omit-frame-pointer
+                                                   -fno-sanitize-recover=all)
+  target_link_options(keyhole_options INTERFACE -fsanitize=${KEYHOLE_SANITIZE})
+endif()
+
+# keyhole_library(NAME DEPENDS...): the library of one folder of src/. All sources of the folder belong to it.
+function(keyhole_library name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.h)
+  if(sources)
+    add_library(keyhole_${name} STATIC ${sources} ${headers})
+    set(scope PUBLIC)
+    target_link_libraries(keyhole_${name} PRIVATE $<BUILD_INTERFACE:keyhole_options>)
+  else()
+    add_library(keyhole_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(keyhole::${name} ALIAS keyhole_${name})
+  set_target_properties(keyhole_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(keyhole_${name} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/keyhole>)
+  target_compile_features(keyhole_${name} ${scope} cxx_std_20)
+  target_link_libraries(keyhole_${name} ${scope} ${ARGN})
+endfunction()

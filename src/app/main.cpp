@@ -1,0 +1,2 @@
+// The `keyhole` command.
+int main() { return 0; }

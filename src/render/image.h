@@ -1,0 +1,33 @@
+// Images in memory (linear RGB, float) and in files.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/spectrum.h"
+
+namespace keyhole {
+
+struct Image {
+    int width = 0, height = 0;
+    std::vector<float> rgb;  // row by row from the top, 3 per pixel
+
+    Image() = default;
+    Image(int w, int h) : width(w), height(h), rgb(static_cast<std::size_t>(w) * h * 3, 0.0f) {}
+    float* pixel(int x, int y) { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
+    const float* pixel(int x, int y) const { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
+};
+
+// Throws InputError if the file cannot be read.
+Image read_image(const std::string& filename);
+
+struct WriteOptions {
+    std::map<std::string, std::string> metadata;  // EXR attributes / PNG text
+    double exposure = 0;                          // stops, PNG only
+};
+// By extension: .exr (float32, linear) or .png (8-bit sRGB). Written to a temporary name in the same folder and renamed.
+// Throws std::runtime_error if it cannot be written.
+void write_image(const std::string& filename, const Image& image, const WriteOptions& options = {});
+
+}  // namespace keyhole

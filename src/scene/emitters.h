@@ -1,0 +1,33 @@
+// Every emitter of the scene reader. One file of emitters/ each.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scene/emitter.h"
+#include "scene/texture.h"
+
+namespace keyhole {
+
+class Shape;
+
+// One-sided: emits to the side of the surface's normal. Points are uniform in area, directions cosine-weighted.
+std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, ColorInput radiance);
+std::unique_ptr<Emitter> make_point_emitter(const Vec3& position, const Spectrum& intensity);
+// Falls off linearly in angle from `beam_width` to `cutoff_angle` (degrees, half-angles), as Mitsuba's.
+// `to_world` maps the local axis +z. The scale of `to_world` is ignored.
+std::unique_ptr<Emitter> make_spot_emitter(const Affine& to_world, const Spectrum& intensity, double cutoff_angle,
+                                           double beam_width);
+// `direction`: in which the light travels.
+std::unique_ptr<Emitter> make_directional_emitter(const Vec3& direction, const Spectrum& irradiance);
+std::unique_ptr<Emitter> make_constant_emitter(const Spectrum& radiance);
+
+struct EnvmapParams {
+    std::string filename;  // latitude-longitude image, up is +y
+    double scale = 1;
+    Affine to_world = Affine::Identity();
+};
+// Directions are drawn by the bilinearly interpolated image times the sine. Throws InputError as make_bitmap does.
+std::unique_ptr<Emitter> make_envmap_emitter(const EnvmapParams& params);
+
+}  // namespace keyhole

@@ -1,0 +1,27 @@
+// Reconstruction filters: separable, even, unit integral over the plane in units of pixels.
+#pragma once
+
+#include <string>
+
+namespace keyhole {
+
+struct ReconstructionFilter {
+    enum class Type { box, tent, gaussian } type = Type::box;
+    double radius = 0.5;  // support is [-radius, radius]
+    double stddev = 0.5;  // gaussian only; truncated at its radius, shifted to be zero there, and normalised
+
+    double operator()(double x) const;  // value in one dimension; normalised over its support
+    const char* name() const;
+};
+
+ReconstructionFilter make_box_filter(double radius = 0.5);
+ReconstructionFilter make_tent_filter(double radius = 1.0);
+ReconstructionFilter make_gaussian_filter(double stddev = 0.5, double radius = 2.0);
+
+struct FilmSettings {
+    int width = 768, height = 576;
+    int crop_x = 0, crop_y = 0, crop_width = 768, crop_height = 576;
+    ReconstructionFilter filter;
+};
+
+}  // namespace keyhole

@@ -1,0 +1,75 @@
+// The scene as transport sees it: rays, emitters, a sensor and the film's settings.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/bsdf.h"
+#include "scene/emitter.h"
+#include "scene/filter.h"
+#include "scene/sensor.h"
+#include "scene/shape.h"
+
+namespace keyhole {
+
+class EmbreeScene;  // embree.h
+
+// What a scene needs from the algorithms; nothing else is paid for.
+struct Requirements {
+    BsdfTraits bsdfs;          // the union over all BSDFs in use
+    bool aperture = false;     // lens coordinates
+    bool environment = false;  // rays that escape carry light
+    bool infinite_emitters = false;
+    bool delta_emitters = false;
+};
+
+struct SceneStatistics {
+    std::size_t triangles = 0;            // as traced, instances multiplied
+    std::size_t unique_triangles = 0;
+    std::size_t shapes = 0, instances = 0, emitters = 0, bsdfs = 0, textures = 0;
+    std::size_t mesh_bytes = 0, texture_bytes = 0, embree_bytes = 0;
+};
+
+class Scene {
+  public:
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+    ~Scene();
+
+    // The nearest surface along the ray within (tnear, tfar).
+    std::optional<SurfacePoint> intersect(const Ray& ray) const;
+    // Whether the open segment or ray is free of surfaces.
+    bool unoccluded(const Ray& ray) const;
+
+    // Rays that leave or reach a surface start and end off it by an error bound that scales with its coordinates.
+    // `w` points to the side the ray is on.
+    static Vec3 offset_origin(const Vec3& p, const Vec3& ng, const Vec3& w);
+
+    // Emitters, chosen by power.
+    std::span<const Emitter* const> emitters() const { return emitters_; }
+    // Index of the chosen emitter for u in [0,1).
+    std::uint32_t choose_emitter(double u) const;
+    double emitter_probability(const Emitter* emitter) const;  // constant time
+    const Emitter* environment() const { return environment_; }
+
+    const Sensor& sensor() const { return *sensor_; }
+    const FilmSettings& film() const { return film_; }
+    const Requirements& requirements() const { return requirements_; }
+    const SceneStatistics& statistics() const { return statistics_; }
+    Vec3 center() const { return center_; }
+    double radius() const { return radius_; }
+    // Most edges of a path that the scene file asks for (its integrator's max_depth); 0 if it does not say, -1 if any.
+    int max_path_length() const { return max_path_length_; }
+    std::uint64_t content_hash() const { return content_hash_; }
+
+  private:
+    friend class SceneBuilder;
+    Scene();
+    // (data members are the implementer's)
+};
+
+}  // namespace keyhole
