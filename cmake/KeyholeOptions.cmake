@@ -1,6 +1,9 @@
 # Flags that every target of the project shares.
 add_library(keyhole_options INTERFACE)
 target_compile_options(keyhole_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(keyhole_options INTERFACE -Wno-restrict)  # false alarms in std::string (GCC bug 105651)
+endif()
 # sqrt must not set errno: the inner loop takes many square roots.
 target_compile_options(keyhole_options INTERFACE -fno-math-errno)
 if(KEYHOLE_WERROR)

@@ -1,7 +1,7 @@
 // The scene as transport sees it: rays, emitters, a sensor and the film's settings.
 #pragma once
 
-#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -69,7 +69,18 @@ class Scene {
   private:
     friend class SceneBuilder;
     Scene();
-    // (data members are the implementer's)
+
+    std::unique_ptr<EmbreeScene> embree_;
+    std::vector<const Emitter*> emitters_;
+    const Emitter* environment_ = nullptr;
+    std::unique_ptr<Sensor> sensor_;
+    FilmSettings film_;
+    Requirements requirements_;
+    SceneStatistics statistics_;
+    Vec3 center_{0, 0, 0};
+    double radius_ = 0;
+    int max_path_length_ = 0;
+    std::uint64_t content_hash_ = 0;
 };
 
 }  // namespace keyhole

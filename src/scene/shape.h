@@ -2,7 +2,9 @@
 // that a hit point lies on its surface and on its ray to double precision.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
