@@ -31,6 +31,7 @@ function(keyhole_library name)
     set(scope INTERFACE)
   endif()
   add_library(keyhole::${name} ALIAS keyhole_${name})
+  set_property(GLOBAL APPEND PROPERTY KEYHOLE_LIBRARIES keyhole_${name})
   set_target_properties(keyhole_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(keyhole_${name} ${scope}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/keyhole>)

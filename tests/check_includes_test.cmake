@@ -1,0 +1,35 @@
+# Shows that check_includes.cmake accepts what is allowed and names what is forbidden. Each case is a file and one line
+# of it. Usage: cmake -DWORK=<scratch folder> -P check_includes_test.cmake
+cmake_policy(VERSION 3.25)
+
+# check(FILE LINE MESSAGE): a tree with this file is refused with this message; no message: it is accepted.
+function(check file line message)
+  file(REMOVE_RECURSE ${WORK})
+  foreach(header base/a chain/a scene/a pathspace/a pss/a inverse/a strategies/a render/a compare/a app/a)
+    file(WRITE ${WORK}/${header}.h "#pragma once\n")
+  endforeach()
+  file(WRITE ${WORK}/${file} "// A file.\n${line}\n")
+  execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${WORK} -P ${CMAKE_CURRENT_LIST_DIR}/check_includes.cmake
+                  RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  string(FIND "${output}" "${message}" position)
+  if(message STREQUAL "" AND NOT status EQUAL 0)
+    message(SEND_ERROR "${file} with ${line} was refused:\n${output}")
+  elseif(NOT message STREQUAL "" AND (status EQUAL 0 OR position EQUAL -1))
+    message(SEND_ERROR "${file} with ${line} was not refused with '${message}':\n${output}")
+  endif()
+endfunction()
+
+check(pathspace/b.cpp "#include \"scene/a.h\"" "")
+check(app/b.cpp "#include \"base/a.h\"" "")
+check(strategies/b.h "#include \"chain/a.h\"" "")
+check(render/b.h "#include \"chain/a.h\"" "")
+check(chain/b.h "#include <vector>" "")
+check(pathspace/b.cpp "#include \"pss/a.h\"" "pathspace/b.cpp: pathspace must not include pss")
+check(base/b.h "  #  include \"scene/a.h\"" "base/b.h: base must not include scene")
+check(pathspace/b.h "#include \"chain/a.h\"" "pathspace must not include chain")
+check(chain/b.h "#include \"base/a.h\"" "chain must not include base")
+check(chain/b.h "#include <Eigen/Core>" "chain uses the standard library only")
+check(render/deep/b.h "#include \"compare/a.h\"" "render must not include compare")
+check(scene/b.h "#include \"a.h\"" "is no file of src/")
+check(extra/b.h "" "extra/b.h: the folder is not part of the architecture")
+file(REMOVE_RECURSE ${WORK})
