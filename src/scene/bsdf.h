@@ -47,6 +47,7 @@ struct BsdfTraits {
     bool chooses_lobe = false;    // `sample` reads the lobe number
     bool needs_uv = false;        // evaluates a texture
     bool needs_tangents = false;  // anisotropic or bump-mapped
+    std::uint8_t lobes = 1;       // BsdfSample::lobe is less than this
 };
 
 class Bsdf {
