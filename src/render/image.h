@@ -19,15 +19,22 @@ struct Image {
     const float* pixel(int x, int y) const { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
 };
 
-// Throws InputError if the file cannot be read.
+// Any file OpenImageIO reads. Channels named R, G, B, else the first three; an image of one or two channels is grey.
+// Integer values are decoded from sRGB unless the file says that they are linear. Throws InputError if it cannot be
+// read.
 Image read_image(const std::string& filename);
+
+// OpenImageIO's name of the format that write_image uses for the file. Throws InputError, which lists the valid
+// extensions, for any other.
+std::string image_format(const std::string& filename);
 
 struct WriteOptions {
     std::map<std::string, std::string> metadata;  // EXR attributes / PNG text
     double exposure = 0;                          // stops, PNG only
 };
-// By extension: .exr (float32, linear) or .png (8-bit sRGB). Written to a temporary name in the same folder and renamed.
-// Throws std::runtime_error if it cannot be written.
+// By extension: .exr (float32, linear) or .png (8-bit sRGB, clipped). Written to a temporary name in the same folder
+// and renamed, so a reader never sees half a file. Throws InputError for an unknown extension and std::runtime_error if
+// the file cannot be written; an earlier file of that name then stays as it was.
 void write_image(const std::string& filename, const Image& image, const WriteOptions& options = {});
 
 }  // namespace keyhole
