@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Builds Keyhole and renders a scene. Installs what is missing first (see setup.sh).
+#
+#   scripts/render.sh [SCENE] [OPTIONS]
+#
+#   SCENE    a scene file, a folder with a scene.xml, or the name of a folder of scenes/ (default: cornell-box)
+#   OPTIONS  options of `keyhole render`, such as --time 60s, --size 640x480, -o picture.exr
+#
+# The picture is written to out/SCENE.exr (linear) and out/SCENE.png, unless -o says otherwise.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+source "$root/scripts/setup.sh"
+
+scene=cornell-box
+case ${1:-} in
+    -h | --help) sed -n '2,/^set/s/^# \{0,1\}//p' "$0" && exit ;;
+    -*) ;;
+    ?*) scene=$1 && shift ;;
+esac
+[ -e "$scene" ] || [ ! -d "$root/scenes/$scene" ] || scene=$root/scenes/$scene
+[ ! -d "$scene" ] || scene=$scene/scene.xml
+[ -f "$scene" ] || fail "no scene '$scene': give a scene file or one of: $(cd "$root/scenes" && echo *)"
+
+name=$(basename "$(dirname "$(realpath "$scene")")")
+[ "$(basename "$scene")" = scene.xml ] || name=$(basename "$scene" .xml)
+
+ensure_requirements "${CXX:-c++}"
+(cd "$root" && build_preset release build/release keyhole)
+
+output=(-o "$root/out/$name.exr" -o "$root/out/$name.png")
+for option in "$@"; do
+    case $option in -o* | --output*) output=() ;; esac
+done
+mkdir -p "$root/out"
+"$root/build/release/keyhole" render "$scene" "${output[@]}" "$@"
