@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Sourced by render.sh and test.sh: finds what is missing on this machine and installs it where that is possible.
 # Debian 12, Ubuntu 24.04 and newer: apt-get, as root or through sudo. Elsewhere: says what is missing and stops.
 
