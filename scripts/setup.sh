@@ -73,7 +73,7 @@ ensure_requirements() {
     local missing packages version
     missing=$(missing_requirements "$1")
     if [ -n "$missing" ]; then
-        mapfile -t packages < <(cut -d'|' -f1 <<<"$missing")
+        mapfile -t packages <<<"$(cut -d'|' -f1 <<<"$missing")"
         if have apt-get && install_packages "${packages[@]}"; then missing=$(missing_requirements "$1"); fi
     fi
     if [ -n "$missing" ]; then
