@@ -3,7 +3,7 @@
 // the endpoint only. Both use the same density of the endpoint, so that the density of a path factorises by vertex.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 
 #include "base/spectrum.h"
 #include "base/vec.h"
@@ -14,7 +14,8 @@ struct EmitterPoint {
     Vec3 p;   // position; at infinity: unit direction from the scene towards the emitter
     Vec3 ng;  // unit normal of an area emitter's surface, else zero
     Vec2 uv{0, 0};
-    double pdf = 0;  // density given the emitter: area; at infinity: solid angle; 1 where `delta`
+    double pdf = 0;    // density given the emitter: area; at infinity: solid angle; 1 where `delta`
+    float offset = 0;  // area emitters: bound of a ray query's float error at p, as a distance along ng
 };
 
 struct EmissionRay {
@@ -59,8 +60,17 @@ class Emitter {
     virtual const char* name() const = 0;
     const EmitterTraits& traits() const { return traits_; }
 
+    // Index in Scene::emitters() and the probability that Scene::choose_emitter chooses it; set by the scene.
+    std::uint32_t index() const { return index_; }
+    double selection_probability() const { return selection_probability_; }
+
   protected:
     EmitterTraits traits_;
+
+  private:
+    friend class SceneBuilder;
+    std::uint32_t index_ = 0;
+    double selection_probability_ = 0;
 };
 
 }  // namespace keyhole

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/bsdf.h"
@@ -40,20 +41,35 @@ class Scene {
     Scene& operator=(const Scene&) = delete;
     ~Scene();
 
-    // The nearest surface along the ray within (tnear, tfar).
-    std::optional<SurfacePoint> intersect(const Ray& ray) const;
-    // Whether the open segment or ray is free of surfaces.
+    // The nearest surface along the ray within (tnear, tfar); the second form fills `x` in place if there is one.
+    std::optional<SurfacePoint> intersect(const Ray& ray) const {
+        std::optional<SurfacePoint> x(std::in_place);
+        if (!intersect(ray, *x)) x.reset();
+        return x;
+    }
+    bool intersect(const Ray& ray, SurfacePoint& x) const;
+    // Whether the ray is free of surfaces within (tnear, tfar).
     bool unoccluded(const Ray& ray) const;
+    // Whether the open segment is. Ends on surfaces must be offset.
+    bool unoccluded(const Vec3& a, const Vec3& b) const;
 
-    // Rays that leave or reach a surface start and end off it by an error bound that scales with its coordinates.
-    // `w` points to the side the ray is on.
-    static Vec3 offset_origin(const Vec3& p, const Vec3& ng, const Vec3& w);
+    // Rays that leave or reach a surface start and end off it by an error bound that scales with the coordinates.
+    // `w` points to the side the ray is on. Points that are on no surface stay where they are.
+    static Vec3 offset_origin(const SurfacePoint& x, const Vec3& w) { return x.p + side(x.ng, w) * x.offset * x.ng; }
+    static Vec3 offset_origin(const EmitterPoint& e, const Vec3& w) { return e.p + side(e.ng, w) * e.offset * e.ng; }
+    // The ray that leaves a surface along the unit direction `w`: tested from off it, with the exact origin for the hit.
+    static Ray ray_from(const SurfacePoint& x, const Vec3& w) {
+        return {x.p, w, 0, std::numeric_limits<double>::infinity(), side(x.ng, w) * x.offset * x.ng};
+    }
+    static Ray ray_from(const EmitterPoint& e, const Vec3& w) {
+        return {e.p, w, 0, std::numeric_limits<double>::infinity(), side(e.ng, w) * e.offset * e.ng};
+    }
 
     // Emitters, chosen by power.
     std::span<const Emitter* const> emitters() const { return emitters_; }
     // Index of the chosen emitter for u in [0,1).
     std::uint32_t choose_emitter(double u) const;
-    double emitter_probability(const Emitter* emitter) const;  // constant time
+    double emitter_probability(const Emitter* emitter) const { return emitter->selection_probability(); }
     const Emitter* environment() const { return environment_; }
 
     const Sensor& sensor() const { return *sensor_; }
@@ -69,9 +85,12 @@ class Scene {
   private:
     friend class SceneBuilder;
     Scene();
+    static double side(const Vec3& ng, const Vec3& w) { return w.dot(ng) > 0 ? 1 : -1; }
 
     std::unique_ptr<EmbreeScene> embree_;
+    std::vector<std::shared_ptr<const Emitter>> owned_emitters_;
     std::vector<const Emitter*> emitters_;
+    std::vector<double> emitter_cdf_;  // entry i: probability of emitters 0 to i
     const Emitter* environment_ = nullptr;
     std::unique_ptr<Sensor> sensor_;
     FilmSettings film_;

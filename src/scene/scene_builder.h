@@ -40,6 +40,8 @@ class SceneBuilder {
     void add_emitter(std::unique_ptr<Emitter> emitter);  // other than area; at most one environment
     void set_sensor(std::unique_ptr<Sensor> sensor, const FilmSettings& film);
     void set_max_path_length(int edges);
+    void set_robust(bool robust);  // watertight but slower ray queries; off by default
+    void set_texture_statistics(std::size_t count, std::size_t bytes);
     void set_content_hash(std::uint64_t hash);
 
     // Builds Embree's hierarchy (in parallel) and the emitter distribution. Throws std::invalid_argument if there is no

@@ -18,6 +18,8 @@ namespace keyhole {
 struct Ray {
     Vec3 o, d;  // d is unit length
     double tnear = 0, tfar = std::numeric_limits<double>::infinity();
+    // The query starts at o + offset, so that a ray does not hit the surface it leaves; the hit point is on o + t d.
+    Vec3 offset{0, 0, 0};
 };
 
 struct Mesh {
@@ -32,15 +34,26 @@ struct Mesh {
 struct ShapeSample {
     Vec3 p, ng;
     Vec2 uv;
+    float offset = 0;  // as SurfacePoint::offset
+};
+
+struct InstanceTransform;  // instance.h
+
+// What a float query found, to be refined by the shape.
+struct ShapeHit {
+    std::uint32_t primitive = 0;
+    float t = 0;                                  // along the ray; good to a few float digits
+    const InstanceTransform* instance = nullptr;  // of the instance the shape was seen through, if any
 };
 
 class Shape {
   public:
     virtual ~Shape() = default;
 
-    // Where the ray meets primitive `primitive`: the exact parametric distance and the surface there (all fields but
-    // bsdf and emitter). `ray` need not hit it exactly (Embree decided in float); the point is on the surface's plane.
-    virtual double fill(const Ray& ray, std::uint32_t primitive, SurfacePoint& x) const = 0;
+    // Where the ray meets the surface, in double precision: the distance (returned) and the surface there (all fields
+    // but bsdf and emitter). The ray may miss by a float error; the point is on the plane of the hit triangle, or on
+    // the surface of any other shape.
+    virtual double fill(const Ray& ray, const ShapeHit& hit, SurfacePoint& x) const = 0;
 
     virtual double area() const = 0;
     virtual ShapeSample sample(double u_primitive, const Vec2& u) const = 0;  // pdf 1 / area()

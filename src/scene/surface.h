@@ -17,6 +17,7 @@ struct SurfacePoint {
     // dp/du = du_s * s and dp/dv = dv_s * s + dv_t * t, projected into the shading frame's tangent plane.
     // Filled only where `bsdf` needs tangents.
     float du_s = 1, dv_s = 0, dv_t = 1;
+    float offset = 0;  // bound of a ray query's float error at p, as a distance along ng
     const Bsdf* bsdf = nullptr;
     const Emitter* emitter = nullptr;  // area emitter of the shape, if any
 };
