@@ -1,0 +1,227 @@
+#include "pathspace/connect.h"
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+bool connectable(const Vertex& v) { return v.x.bsdf && v.x.bsdf->traits().smooth; }
+
+// The BSDF at a subpath's last vertex towards unit `d`. `f` includes the cosine: |ns.w_light| at an eye vertex, and at a
+// light vertex |ns.w_light| / |ng.w_light| |ng.w_eye| (shading normals [Veach 1997, 5.3.2]).
+struct End {
+    Spectrum f{0, 0, 0};
+    double pdf_next = 0, pdf_prev = 0;  // solid-angle densities of d and of the direction back
+    double cos_geometric = 0;           // |ng.d|
+};
+
+bool evaluate_end(const Vertex& v, Mode mode, const Vec3& d, End& end) {
+    const Vec3 w = v.x.frame.to_local(d);
+    const double cos_g = v.x.ng.dot(d);
+    if (!same_side(cos_g, w.z()) || !same_side(v.cos_prev, v.w_prev.z())) return false;
+    end.cos_geometric = std::abs(cos_g);
+    if (mode == Mode::eye) {
+        const BsdfValue value = v.x.bsdf->eval(v.x, v.w_prev, w);
+        end.f = value.f * std::abs(w.z());
+        end.pdf_next = value.pdf_light;
+        end.pdf_prev = value.pdf_eye;
+    } else {
+        const BsdfValue value = v.x.bsdf->eval(v.x, w, v.w_prev);
+        end.f = value.f * std::abs(v.w_prev.z() * cos_g / v.cos_prev);
+        end.pdf_next = value.pdf_eye;
+        end.pdf_prev = value.pdf_light;
+    }
+    return !is_black(end.f);
+}
+
+// A segment between two points, each moved off its surface to the side of the other.
+bool visible(Tracer& tracer, const Vec3& a, const Vec3& b) {
+    const Vec3 d = b - a;
+    const double length = d.norm();
+    return length > 0 && tracer.unoccluded({a, d / length, 0, length});
+}
+
+// s = 0: x_k lies on an emitter.
+Connection hit_emitter(const Scene& scene, std::span<const Vertex> eye) {
+    Connection c;
+    const Vertex& x = eye.back();
+    const Emitter* emitter = x.x.emitter;
+    if (!emitter) {
+        c.failure = PathFailure::zero_bsdf;
+        return c;
+    }
+    const EmitterPoint e = emitter_point(x);
+    const Vec3 w = x.infinite ? Vec3(-x.x.p) : x.x.frame.to_world(x.w_prev);
+    c.throughput = x.throughput * emitter->radiance(e, w);
+    if (is_black(c.throughput)) {
+        c.failure = PathFailure::zero_bsdf;
+        return c;
+    }
+    c.junction.light_t1 = scene.emitter_probability(emitter) * emitter->pdf_point(e);
+    // From the emitter to x_{k-1}: solid angle to area, or per perpendicular area times the cosine there.
+    const Vertex& previous = eye[eye.size() - 2];
+    double to_previous = x.to_prev;
+    if (x.infinite) to_previous = eye.size() > 2 ? std::abs(previous.x.ng.dot(x.x.p)) : 0;
+    c.junction.light_t2 = emitter->pdf_ray(e, w) * to_previous;
+    return c;
+}
+
+// t = 1: y_{s-1} is seen by the sensor.
+Connection see_from_sensor(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vertex& x0,
+                           std::span<const Vertex> light) {
+    Connection c;
+    const Vertex& y = light.back();
+    const auto view = tracer.scene().sensor().view(sensor, y.x.p);
+    if (!view || !window.contains(view->raster)) {
+        c.failure = PathFailure::outside_film;
+        return c;
+    }
+    c.raster = view->raster;
+    Vec3 d = x0.infinite ? x0.x.p : Vec3(x0.x.p - y.x.p);
+    double inv_r2 = 1;
+    if (!x0.infinite) {
+        inv_r2 = 1 / d.squaredNorm();
+        d *= std::sqrt(inv_r2);
+    }
+    End end;
+    if (!evaluate_end(y, Mode::light, d, end)) {
+        c.failure = PathFailure::zero_bsdf;
+        return c;
+    }
+    if (!visible(tracer, view->o, Scene::offset_origin(y.x.p, y.x.ng, d))) {
+        c.failure = PathFailure::occluded;
+        return c;
+    }
+    c.throughput = y.throughput * end.f * (view->importance * inv_r2 / x0.pdf_fwd);
+    c.junction.eye_t = view->raster_per_measure / window.area() * end.cos_geometric * inv_r2;
+    c.junction.eye_t1 = end.pdf_prev * y.to_prev;
+    return c;
+}
+
+// s = 1: next-event estimation.
+Connection connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const Vertex& y) {
+    Connection c;
+    const Vertex& x = eye.back();
+    const Emitter& emitter = *y.x.emitter;
+    const EmitterPoint e = emitter_point(y);
+    Vec3 d = y.infinite ? y.x.p : Vec3(y.x.p - x.x.p);
+    double inv_r2 = 1;
+    if (!y.infinite) {
+        inv_r2 = 1 / d.squaredNorm();
+        d *= std::sqrt(inv_r2);
+    }
+    const Spectrum emitted = emitter.emitted(e, -d);
+    End end;
+    if (is_black(emitted) || !evaluate_end(x, Mode::eye, d, end)) {
+        c.failure = PathFailure::zero_bsdf;
+        return c;
+    }
+    const Vec3 o = Scene::offset_origin(x.x.p, x.x.ng, d);
+    const bool surface = emitter.traits().surface;
+    const bool seen = y.infinite ? tracer.unoccluded({o, d})
+                                 : visible(tracer, o, surface ? Scene::offset_origin(y.x.p, y.x.ng, -d) : y.x.p);
+    if (!seen) {
+        c.failure = PathFailure::occluded;
+        return c;
+    }
+    c.throughput = x.throughput * end.f * y.throughput * emitted * inv_r2;
+    c.junction.light_t1 = emitter.pdf_ray(e, -d) * end.cos_geometric * inv_r2;
+    c.junction.light_t2 = end.pdf_prev * x.to_prev;
+    c.junction.eye_t = end.pdf_next * (surface ? std::abs(y.x.ng.dot(d)) * inv_r2 : 1);
+    return c;
+}
+
+Connection connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::span<const Vertex> light) {
+    Connection c;
+    const Vertex &x = eye.back(), &y = light.back();
+    Vec3 d = y.x.p - x.x.p;
+    const double inv_r2 = 1 / d.squaredNorm();
+    if (!std::isfinite(inv_r2)) {
+        c.failure = PathFailure::occluded;
+        return c;
+    }
+    d *= std::sqrt(inv_r2);
+    End at_x, at_y;
+    if (!evaluate_end(x, Mode::eye, d, at_x) || !evaluate_end(y, Mode::light, -d, at_y)) {
+        c.failure = PathFailure::zero_bsdf;
+        return c;
+    }
+    if (!visible(tracer, Scene::offset_origin(x.x.p, x.x.ng, d), Scene::offset_origin(y.x.p, y.x.ng, -d))) {
+        c.failure = PathFailure::occluded;
+        return c;
+    }
+    c.throughput = x.throughput * at_x.f * at_y.f * y.throughput * inv_r2;
+    c.junction.light_t1 = at_y.pdf_next * at_x.cos_geometric * inv_r2;
+    c.junction.light_t2 = at_x.pdf_prev * x.to_prev;
+    c.junction.eye_t = at_x.pdf_next * at_y.cos_geometric * inv_r2;
+    c.junction.eye_t1 = at_y.pdf_prev * y.to_prev;
+    return c;
+}
+
+}  // namespace
+
+const char* name(PathFailure failure) {
+    switch (failure) {
+        case PathFailure::none: return "none";
+        case PathFailure::eye_subpath_short: return "eye subpath short";
+        case PathFailure::light_subpath_short: return "light subpath short";
+        case PathFailure::occluded: return "occluded";
+        case PathFailure::zero_bsdf: return "zero BSDF";
+        case PathFailure::outside_film: return "outside the film";
+        case PathFailure::non_finite: return "not finite";
+        case PathFailure::count: break;
+    }
+    return "unknown";
+}
+
+Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor,
+                   std::span<const Vertex> eye, std::span<const Vertex> light) {
+    if (light.empty()) return hit_emitter(tracer.scene(), eye);
+    Connection failed;
+    failed.failure = PathFailure::zero_bsdf;
+    if (eye.size() > 1 && !connectable(eye.back())) return failed;
+    if (light.size() > 1 && !connectable(light.back())) return failed;
+    if (eye.size() == 1) {
+        if (light.size() == 1) return failed;
+        return see_from_sensor(tracer, window, sensor, eye.front(), light);
+    }
+    if (light.size() == 1) return connect_emitter(tracer, eye, light.front());
+    return connect_surfaces(tracer, eye, light);
+}
+
+double mis_weight(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,
+                  Techniques techniques) {
+    const int t = static_cast<int>(eye.size()), s = static_cast<int>(light.size()), k = s + t - 1;
+    double sum = 1;
+    // Towards the emitter: technique i+1 makes x_i from the eye side and connects x_i to x_{i+1}.
+    double ratio = 1;
+    bool previous_delta = false;  // the event at x_i; the connected vertices scatter by smooth lobes
+    for (int i = t; i <= k; ++i) {
+        const Vertex& v = light[k - i];
+        const double eye_pdf = i == t ? junction.eye_t : (i == t + 1 ? junction.eye_t1 : v.pdf_rev);
+        ratio *= eye_pdf / v.pdf_fwd;
+        if (i == k) {
+            const EmitterTraits& emitter = v.x.emitter->traits();
+            if ((emitter.surface || emitter.environment) && !emitter.delta) sum += ratio;
+            break;
+        }
+        const bool delta = i > t && v.delta;
+        const bool next_delta = i + 1 < k && light[k - i - 1].delta;
+        if (!delta && !next_delta && (techniques == Techniques::all || i + 1 >= k)) sum += ratio;
+    }
+    // Towards the sensor: technique i connects x_{i-1} to x_i.
+    ratio = 1;
+    previous_delta = false;
+    for (int i = t - 1; i >= 1; --i) {
+        const Vertex& v = eye[i];
+        const double light_pdf = i == t - 1 ? junction.light_t1 : (i == t - 2 ? junction.light_t2 : v.pdf_rev);
+        ratio *= light_pdf / v.pdf_fwd;
+        if (k == 1) break;
+        const bool delta = previous_delta;
+        previous_delta = i > 1 && eye[i - 1].delta;
+        if (!delta && !previous_delta && (techniques == Techniques::all || i >= k)) sum += ratio;
+    }
+    return 1 / sum;
+}
+
+}  // namespace keyhole

@@ -1,0 +1,44 @@
+// Subpaths sampled from the sensor or from an emitter, vertex by vertex.
+#pragma once
+
+#include "pathspace/tracer.h"
+#include "pathspace/vertex.h"
+#include "scene/bsdf.h"
+
+namespace keyhole {
+
+// Raster positions are uniform over this window: the crop window and a border as wide as the filter reaches over.
+struct RasterWindow {
+    Vec2 origin, size;
+
+    explicit RasterWindow(const FilmSettings& film);
+    double area() const { return size.x() * size.y(); }
+    Vec2 at(const Vec2& u) const { return origin + size.cwiseProduct(u); }
+    bool contains(const Vec2& r) const {
+        const double x = r.x() - origin.x(), y = r.y() - origin.y();
+        return x >= 0 && y >= 0 && x < size.x() && y < size.y();
+    }
+};
+
+enum class Extension {
+    surface,  // the next vertex lies on a surface
+    escaped,  // the ray left the scene; the next vertex is at infinity if the scene has an environment
+    absorbed  // nothing is scattered
+};
+
+// x_0 of an eye subpath. `u` is read only by sensors with an aperture.
+SensorPoint start_eye(const Scene& scene, const Vec2& u, Vertex& x0);
+// x_1, by the ray through a raster position.
+Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vec2& raster,
+                         Vertex& x0, Vertex& x1);
+
+// y_0 of a light subpath. Returns false if the scene has no emitter or the drawn point emits nothing.
+bool start_light(const Scene& scene, double u_choice, double u_part, const Vec2& u, Vertex& y0);
+// y_1, by the ray that leaves the emitter.
+Extension first_light_edge(Tracer& tracer, const Vec2& u, Vertex& y0, Vertex& y1);
+
+// The vertex after `v`. `u_lobe` chooses the lobe, `u` the direction. Sets v's event, prev's reverse density and `next`
+// up to its reverse density.
+Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& next, double u_lobe, const Vec2& u);
+
+}  // namespace keyhole

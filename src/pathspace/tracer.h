@@ -1,0 +1,47 @@
+// A worker's view of the scene: casts rays and counts them. With a recorder it also keeps them, in order, so that they
+// can be replayed through Embree alone.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace keyhole {
+
+struct RecordedRay {
+    Ray ray;
+    bool occlusion;
+};
+
+class Tracer {
+  public:
+    explicit Tracer(const Scene& scene) : scene_(&scene) {}
+
+    const Scene& scene() const { return *scene_; }
+
+    bool intersect(const Ray& ray, SurfacePoint& hit) {
+        note(ray, false);
+        return scene_->intersect(ray, hit);
+    }
+    bool unoccluded(const Ray& ray) {
+        note(ray, true);
+        return scene_->unoccluded(ray);
+    }
+
+    std::uint64_t rays() const { return rays_; }
+    void record_into(std::vector<RecordedRay>* rays) { recorder_ = rays; }
+
+  private:
+    void note(const Ray& ray, bool occlusion) {
+        ++rays_;
+        if (recorder_) recorder_->push_back({ray, occlusion});
+    }
+
+    const Scene* scene_;
+    std::uint64_t rays_ = 0;
+    std::vector<RecordedRay>* recorder_ = nullptr;
+};
+
+}  // namespace keyhole

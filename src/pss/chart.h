@@ -1,0 +1,61 @@
+// The map T_t from primary sample space to paths, one chart per technique.
+#pragma once
+
+#include <vector>
+
+#include "pathspace/connect.h"
+#include "pss/layout.h"
+
+namespace keyhole {
+
+// A point of the chart t of paths with k edges. Eye coordinates first, light coordinates from `light()` on; both arrays
+// have the layout's full capacity, of which the prefix that (k, t) uses is meaningful.
+struct PrimarySample {
+    int k = 0, t = 0;
+    std::vector<double> eye, light;
+
+    explicit PrimarySample(const CoordinateLayout& layout)
+        : eye(layout.eye_capacity()), light(layout.light_capacity()) {}
+    int s() const { return k + 1 - t; }
+};
+
+// What the chain needs of T_t(u).
+struct Evaluation {
+    PathFailure failure = PathFailure::none;
+    Spectrum contribution{0, 0, 0};  // w_t f / p_t: f* of it is C(x)
+    Vec2 raster{0, 0};
+};
+
+// Maps coordinates to paths. Owns the vertices, so one per thread.
+class Chart {
+  public:
+    Chart(const Scene& scene, const CoordinateLayout& layout);
+
+    // Traces T_t(u). k in [1, max_length], t in [1, k+1]; t = 1 with k = 1 has zero contribution by convention.
+    Evaluation evaluate(const PrimarySample& u);
+
+    // The vertices of the last evaluation that did not fail.
+    std::span<const Vertex> eye() const { return {eye_.data(), static_cast<std::size_t>(t_)}; }
+    std::span<const Vertex> light() const { return {light_.data(), static_cast<std::size_t>(s_)}; }
+    const SensorPoint& sensor_point() const { return sensor_point_; }
+    const Junction& junction() const { return junction_; }
+
+    Tracer& tracer() { return tracer_; }
+    const RasterWindow& window() const { return window_; }
+    const CoordinateLayout& layout() const { return *layout_; }
+
+  private:
+    PathFailure trace_eye(const PrimarySample& u);
+    PathFailure trace_light(const PrimarySample& u);
+
+    Tracer tracer_;
+    const CoordinateLayout* layout_;
+    RasterWindow window_;
+    std::vector<Vertex> eye_, light_;
+    SensorPoint sensor_point_;
+    Junction junction_;
+    Vec2 raster_{0, 0};
+    int t_ = 0, s_ = 0;
+};
+
+}  // namespace keyhole

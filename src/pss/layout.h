@@ -1,0 +1,55 @@
+// Which primary sample coordinate does what. Each discrete choice has a coordinate of its own, each vertex a block of
+// fixed size, and coordinates that the scene never reads do not exist: lens coordinates come with a finite aperture, the
+// emitter's choice with a second emitter, lobe coordinates with BSDFs that choose among lobes.
+//
+// A path of k edges by technique t (t vertices from the eye, s = k + 1 - t from the light) uses a prefix of the eye
+// coordinates and a prefix of the light coordinates:
+//     eye:   [lens 2] raster 2, then per scattering vertex  direction 2 [lobe 1]
+//     light: [emitter 1] part 1, point 2, ray 2, then per scattering vertex  direction 2 [lobe 1]
+#pragma once
+
+#include "base/vec.h"
+#include "scene/scene.h"
+
+namespace keyhole {
+
+class CoordinateLayout {
+  public:
+    CoordinateLayout(const Scene& scene, int max_length)
+        : lens_(scene.requirements().aperture ? 2 : 0),
+          choice_(scene.emitters().size() > 1 ? 1 : 0),
+          block_(scene.requirements().bsdfs.chooses_lobe ? 3 : 2),
+          max_length_(max_length) {}
+
+    int max_length() const { return max_length_; }
+
+    // How many coordinates a subpath of t (s) vertices uses.
+    int eye_count(int t) const { return t <= 0 ? 0 : (t == 1 ? lens_ : lens_ + 2 + (t - 2) * block_); }
+    int light_count(int s) const { return s <= 0 ? 0 : choice_ + 3 + (s == 1 ? 0 : 2 + (s - 2) * block_); }
+
+    int eye_capacity() const { return eye_count(max_length_ + 1); }
+    int light_capacity() const { return light_count(max_length_); }
+
+    // Readers of a subpath's coordinates `u`; absent coordinates read as 0.
+    Vec2 lens(const double* u) const { return lens_ ? Vec2(u[0], u[1]) : Vec2(0, 0); }
+    Vec2 raster(const double* u) const { return {u[lens_], u[lens_ + 1]}; }
+    double emitter(const double* u) const { return choice_ ? u[0] : 0; }
+    double part(const double* u) const { return u[choice_]; }
+    Vec2 point(const double* u) const { return {u[choice_ + 1], u[choice_ + 2]}; }
+    Vec2 ray(const double* u) const { return {u[choice_ + 3], u[choice_ + 4]}; }
+
+    struct Block {
+        double lobe;
+        Vec2 direction;
+    };
+    // The block of vertex i of its subpath, i >= 1.
+    Block eye_block(const double* u, int i) const { return block(u + lens_ + 2 + (i - 1) * block_); }
+    Block light_block(const double* u, int i) const { return block(u + choice_ + 5 + (i - 1) * block_); }
+
+  private:
+    Block block(const double* u) const { return {block_ == 3 ? u[2] : 0.0, {u[0], u[1]}}; }
+
+    int lens_, choice_, block_, max_length_;
+};
+
+}  // namespace keyhole

@@ -1,0 +1,51 @@
+#include "strategies/technique_distribution.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace keyhole {
+
+TechniqueDistribution::TechniqueDistribution(int min_length, int max_length) : first_(max_length + 2, 0) {
+    for (int k = min_length; k <= max_length; ++k) {
+        first_[k] = static_cast<int>(techniques_.size());
+        if (k == 1)
+            techniques_.push_back({1, 2});
+        else
+            for (int t = 1; t <= k + 1; ++t) techniques_.push_back({k, t});
+    }
+    first_[max_length + 1] = static_cast<int>(techniques_.size());
+    p_.assign(techniques_.size(), 1.0 / static_cast<double>(techniques_.size()));
+    length_p_.assign(max_length + 1, 0.0);
+    accumulate();
+}
+
+void TechniqueDistribution::fit(const std::vector<double>& energies, double uniform_share) {
+    const double sum = std::accumulate(energies.begin(), energies.end(), 0.0);
+    const double uniform = 1.0 / static_cast<double>(p_.size());
+    for (std::size_t i = 0; i < p_.size(); ++i)
+        p_[i] = sum > 0 ? (1 - uniform_share) * energies[i] / sum + uniform_share * uniform : uniform;
+    accumulate();
+}
+
+void TechniqueDistribution::accumulate() {
+    cumulative_.assign(p_.size() + 1, 0.0);
+    std::partial_sum(p_.begin(), p_.end(), cumulative_.begin() + 1);
+    std::fill(length_p_.begin(), length_p_.end(), 0.0);
+    for (std::size_t i = 0; i < p_.size(); ++i) length_p_[techniques_[i].k] += p_[i];
+}
+
+int TechniqueDistribution::search(int first, int last, double u) const {
+    const double target = cumulative_[first] + u * (cumulative_[last] - cumulative_[first]);
+    const auto begin = cumulative_.begin() + first + 1, end = cumulative_.begin() + last;
+    return static_cast<int>(std::upper_bound(begin, end, target) - cumulative_.begin()) - 1;
+}
+
+Technique TechniqueDistribution::sample(double u) const {
+    return techniques_[search(0, static_cast<int>(techniques_.size()), u)];
+}
+
+int TechniqueDistribution::sample_given_length(int k, double u) const {
+    return techniques_[search(first_[k], first_[k + 1], u)].t;
+}
+
+}  // namespace keyhole

@@ -1,0 +1,42 @@
+// P(k, t): how large steps and technique changes choose path length and technique. Fitted to the energies
+// E(k, t) = integral of w_t f* that the bootstrap measured, before the first counted mutation.
+#pragma once
+
+#include <vector>
+
+namespace keyhole {
+
+struct Technique {
+    int k = 0, t = 0;
+};
+
+class TechniqueDistribution {
+  public:
+    // Uniform over all techniques of lengths min_length .. max_length (k = 1 has the one technique t = 2).
+    TechniqueDistribution(int min_length, int max_length);
+
+    // In proportion to `energies` (one per techniques()), mixed with a uniform share so that every technique stays
+    // reachable.
+    void fit(const std::vector<double>& energies, double uniform_share);
+
+    const std::vector<Technique>& techniques() const { return techniques_; }
+
+    Technique sample(double u) const;
+    double probability(int k, int t) const { return p_[index(k, t)]; }
+
+    // Techniques of one length: q(t | k), and whether there is more than one.
+    int sample_given_length(int k, double u) const;
+    double probability_given_length(int k, int t) const { return p_[index(k, t)] / length_p_[k]; }
+    bool has_choice(int k) const { return k > 1; }
+
+  private:
+    int index(int k, int t) const { return first_[k] + (k == 1 ? 0 : t - 1); }
+    int search(int first, int last, double u) const;  // by cumulative probability
+    void accumulate();
+
+    std::vector<Technique> techniques_;
+    std::vector<int> first_;  // by k; first_[k + 1] ends k's range
+    std::vector<double> p_, cumulative_, length_p_;
+};
+
+}  // namespace keyhole
