@@ -1,0 +1,11 @@
+// Renders with the reference estimators, path and bdpt.
+#pragma once
+
+#include "render/render.h"
+
+namespace keyhole {
+
+// settings.max_length is resolved already.
+RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks);
+
+}  // namespace keyhole
