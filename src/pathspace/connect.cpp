@@ -34,13 +34,6 @@ bool evaluate_end(const Vertex& v, Mode mode, const Vec3& d, End& end) {
     return !is_black(end.f);
 }
 
-// A segment between two points, each moved off its surface to the side of the other.
-bool visible(Tracer& tracer, const Vec3& a, const Vec3& b) {
-    const Vec3 d = b - a;
-    const double length = d.norm();
-    return length > 0 && tracer.unoccluded({a, d / length, 0, length});
-}
-
 // s = 0: x_k lies on an emitter.
 Connection hit_emitter(const Scene& scene, std::span<const Vertex> eye) {
     Connection c;
@@ -88,7 +81,7 @@ Connection see_from_sensor(Tracer& tracer, const RasterWindow& window, const Sen
         c.failure = PathFailure::zero_bsdf;
         return c;
     }
-    if (!visible(tracer, view->o, Scene::offset_origin(y.x.p, y.x.ng, d))) {
+    if (!tracer.visible(view->o, Scene::offset_origin(y.x, d))) {
         c.failure = PathFailure::occluded;
         return c;
     }
@@ -116,10 +109,10 @@ Connection connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const Ve
         c.failure = PathFailure::zero_bsdf;
         return c;
     }
-    const Vec3 o = Scene::offset_origin(x.x.p, x.x.ng, d);
+    const Vec3 o = Scene::offset_origin(x.x, d);
     const bool surface = emitter.traits().surface;
     const bool seen = y.infinite ? tracer.unoccluded({o, d})
-                                 : visible(tracer, o, surface ? Scene::offset_origin(y.x.p, y.x.ng, -d) : y.x.p);
+                                 : tracer.visible(o, surface ? Scene::offset_origin(y.x, -d) : y.x.p);
     if (!seen) {
         c.failure = PathFailure::occluded;
         return c;
@@ -146,7 +139,7 @@ Connection connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::sp
         c.failure = PathFailure::zero_bsdf;
         return c;
     }
-    if (!visible(tracer, Scene::offset_origin(x.x.p, x.x.ng, d), Scene::offset_origin(y.x.p, y.x.ng, -d))) {
+    if (!tracer.visible(Scene::offset_origin(x.x, d), Scene::offset_origin(y.x, -d))) {
         c.failure = PathFailure::occluded;
         return c;
     }

@@ -83,6 +83,7 @@ bool start_light(const Scene& scene, double u_choice, double u_part, const Vec2&
     y0.x.p = e.p;
     y0.x.ng = e.ng;
     y0.x.uv = e.uv;
+    y0.x.offset = e.offset;
     y0.x.bsdf = nullptr;
     y0.x.emitter = &emitter;
     y0.pdf_fwd = e.pdf * scene.emitter_probability(&emitter);
@@ -100,8 +101,8 @@ Extension first_light_edge(Tracer& tracer, const Vec2& u, Vertex& y0, Vertex& y1
     y1.throughput = y0.throughput * emitter.emitted(e, ray.d) * (1 / ray.pdf);
     if (is_black(y1.throughput)) return Extension::absorbed;
     const bool surface = emitter.traits().surface;
-    const Vec3 o = surface ? Scene::offset_origin(ray.o, e.ng, ray.d) : ray.o;
-    if (!tracer.intersect({o, ray.d}, y1.x)) return Extension::escaped;
+    const Ray query = surface ? Scene::ray_from(e, ray.d) : Ray{ray.o, ray.d};
+    if (!tracer.intersect(query, y1.x)) return Extension::escaped;
     if (y0.infinite)
         arrive_from_infinity(ray.d, ray.pdf, y1);
     else
@@ -133,7 +134,7 @@ Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& nex
     }
     prev.pdf_rev = pdf_reverse * v.to_prev;
 
-    if (!tracer.intersect({Scene::offset_origin(v.x.p, v.x.ng, d), d}, next.x)) {
+    if (!tracer.intersect(Scene::ray_from(v.x, d), next.x)) {
         escape(tracer.scene(), d, pdf, next);
         return Extension::escaped;
     }

@@ -29,6 +29,12 @@ class Tracer {
         note(ray, true);
         return scene_->unoccluded(ray);
     }
+    // The open segment between two points, each offset from its surface.
+    bool visible(const Vec3& a, const Vec3& b) {
+        const Vec3 d = b - a;
+        const double length = d.norm();
+        return length > 0 && unoccluded({a, d / length, 0, length});
+    }
 
     std::uint64_t rays() const { return rays_; }
     void record_into(std::vector<RecordedRay>* rays) { recorder_ = rays; }

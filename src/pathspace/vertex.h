@@ -17,7 +17,7 @@
 namespace keyhole {
 
 struct Vertex {
-    SurfacePoint x;  // endpoints: only p (a direction, if infinite), ng, uv and emitter
+    SurfacePoint x;  // endpoints: only p (a direction, if infinite), ng, uv, offset, emitter
 
     // Of the subpath the vertex was sampled on; "previous" is the neighbour nearer to that subpath's start.
     Vec3 w_prev;                        // unit direction to the previous vertex, in the local shading frame
@@ -32,7 +32,7 @@ struct Vertex {
     bool delta = false;                 // scatters by a delta lobe: cannot be connected
 };
 
-inline EmitterPoint emitter_point(const Vertex& v) { return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd}; }
+inline EmitterPoint emitter_point(const Vertex& v) { return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset}; }
 
 // Whether shading and geometric side of a direction agree. Where they do not, every strategy rejects.
 inline bool same_side(double cos_geometric, double cos_shading) { return cos_geometric * cos_shading > 0; }

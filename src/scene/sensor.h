@@ -5,6 +5,7 @@
 // measurement is the integral of radiance over raster area: a pixel under the box filter is the mean radiance it sees.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -19,6 +20,8 @@ struct SensorPoint {
 
 struct SensorRay {
     Vec3 o, d;  // o lies on the near plane, d is unit length
+    double tfar = std::numeric_limits<double>::infinity();  // from o to the far plane
+    double raster_per_measure = 0;                          // as SensorView's
 };
 
 // How a sensor sees a point of the scene from an endpoint.
