@@ -1,0 +1,75 @@
+// Starting chains in proportion to the target, from independent weighted samples [Veach 1997, section 11.3.1].
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+namespace keyhole {
+
+// Mean and variance of independent samples, one after the other [Welford 1962]; of two sets, merged [Chan et al. 1979].
+class RunningMean {
+  public:
+    void add(double x) {
+        ++count_;
+        const double delta = x - mean_;
+        mean_ += delta / static_cast<double>(count_);
+        squares_ += delta * (x - mean_);
+    }
+    void merge(const RunningMean& other) {
+        if (other.count_ == 0) return;
+        const double n = static_cast<double>(count_), m = static_cast<double>(other.count_);
+        const double delta = other.mean_ - mean_;
+        count_ += other.count_;
+        mean_ += delta * (m / (n + m));
+        squares_ += other.squares_ + delta * delta * (n * m / (n + m));
+    }
+
+    std::uint64_t count() const { return count_; }
+    double mean() const { return mean_; }
+    // Unbiased; 0 for fewer than two samples.
+    double variance() const { return count_ > 1 ? squares_ / static_cast<double>(count_ - 1) : 0; }
+    // Standard error of mean(); infinite for fewer than two samples.
+    double standard_error() const {
+        return count_ > 1 ? std::sqrt(variance() / static_cast<double>(count_))
+                          : std::numeric_limits<double>::infinity();
+    }
+
+  private:
+    std::uint64_t count_ = 0;
+    double mean_ = 0, squares_ = 0;
+};
+
+// Systematic resampling: `count` indices in ascending order. Index i occurs floor(e) or ceil(e) times and on average e
+// times, where e = count * weights[i] / sum of weights, given `u` uniform in [0, 1).
+//
+// Throws std::invalid_argument if a weight is negative or not finite, or if all are zero.
+inline std::vector<std::size_t> resample(std::span<const double> weights, std::size_t count, double u) {
+    double total = 0;
+    for (const double w : weights) {
+        if (!(w >= 0 && std::isfinite(w))) throw std::invalid_argument("a resampling weight is negative or not finite");
+        total += w;
+    }
+    if (!(total > 0 && std::isfinite(total)))
+        throw std::invalid_argument("the resampling weights have no positive sum");
+
+    std::vector<std::size_t> indices;
+    indices.reserve(count);
+    double cumulative = 0;
+    std::size_t last = 0;  // the last index of positive weight: takes what rounding leaves at the end
+    for (std::size_t i = 0; i < weights.size() && indices.size() < count; ++i) {
+        if (!(weights[i] > 0)) continue;
+        last = i;
+        cumulative += weights[i];
+        const double reached = cumulative / total * static_cast<double>(count);
+        while (indices.size() < count && static_cast<double>(indices.size()) + u < reached) indices.push_back(i);
+    }
+    indices.resize(count, last);
+    return indices;
+}
+
+}  // namespace keyhole

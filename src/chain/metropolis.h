@@ -1,0 +1,100 @@
+// A Metropolis-Hastings chain. It knows its states only through the strategies that propose them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "chain/diagnostics.h"
+#include "chain/mixture.h"
+
+namespace keyhole {
+
+// Takes a chain's weighted states: the film, or a histogram in a test.
+template <class T, class State>
+concept Sink = requires(T& sink, const State& state, double weight) {
+    sink.splat(state, weight);
+};
+
+struct StepOutcome {
+    std::size_t strategy = 0;         // its index in the mixture
+    Failure failure = Failure::none;  // other than `none`: nothing was proposed
+    double acceptance = 0;            // the probability with which the proposal was accepted
+    bool accepted = false;
+    bool idle = false;  // no strategy applies to the state; `strategy` is meaningless
+};
+
+// A chain's value is its current state and the weight it still holds; with the state of the random numbers that is all
+// there is to save. Copies are independent (the slots are told apart by an index, not by pointers into the chain).
+template <class State>
+class Chain {
+  public:
+    // `held`: as `held()` returned it when the chain was saved; 0 for a new chain.
+    explicit Chain(State initial, double held = 0) : slots_{initial, std::move(initial)}, held_(held) {}
+
+    const State& current() const { return slots_[current_]; }
+    double held() const { return held_; }
+
+    // The state that the last step proposed, accepted or not. Unspecified if it failed.
+    const State& proposed(const StepOutcome& outcome) const {
+        return slots_[outcome.accepted ? current_ : 1 - current_];
+    }
+
+    // One step. Every step has the weight one: with the acceptance probability a, the current state gets 1 - a and the
+    // proposed one a, whichever becomes the next. The current state's weight is held until it is left, so
+    // that at most one state is splatted in a step.
+    //
+    // A ratio that is negative, infinite or NaN counts as Failure::non_finite and is rejected.
+    template <RandomSource Random, Sink<State> Film>
+    StepOutcome step(const Mixture<State, Random>& mixture, Random& random, Film& film, Diagnostics& diagnostics) {
+        State& x = slots_[current_];
+        State& y = slots_[1 - current_];
+        StepOutcome outcome;
+        const auto selection = mixture.select(x, random);
+        if (!(selection.probability > 0)) {
+            held_ += 1;
+            ++diagnostics.idle;
+            outcome.idle = true;
+            return outcome;
+        }
+        outcome.strategy = selection.index;
+        const Proposal proposal = mixture.strategy(selection.index).propose(x, y, random);
+        outcome.failure = proposal.failure;
+        if (proposal.failure == Failure::none) {
+            const double ratio = mixture.completed_ratio(proposal.ratio, selection, y);
+            if (ratio >= 0 && ratio <= std::numeric_limits<double>::max())
+                outcome.acceptance = std::min(1.0, ratio);
+            else
+                outcome.failure = Failure::non_finite;
+        }
+        const double a = outcome.acceptance;
+        outcome.accepted = a >= 1 || (a > 0 && random.uniform() < a);
+        held_ += 1 - a;
+        if (outcome.accepted) {
+            if (held_ > 0) film.splat(x, held_);
+            current_ = 1 - current_;
+            held_ = a;
+        } else if (a > 0) {
+            film.splat(y, a);
+        }
+        diagnostics.strategies[selection.index].add(outcome.failure, a, outcome.accepted);
+        return outcome;
+    }
+
+    // Splats what the current state still holds. The chain is not changed: this is for a copy of the film (a preview)
+    // or after the last step, and no splat depends on how often it is called.
+    template <Sink<State> Film>
+    void splat_held(Film& film) const {
+        if (held_ > 0) film.splat(slots_[current_], held_);
+    }
+
+  private:
+    std::array<State, 2> slots_;
+    std::size_t current_ = 0;
+    double held_ = 0;
+};
+
+}  // namespace keyhole
