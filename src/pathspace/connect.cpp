@@ -153,20 +153,6 @@ Connection connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::sp
 
 }  // namespace
 
-const char* name(PathFailure failure) {
-    switch (failure) {
-        case PathFailure::none: return "none";
-        case PathFailure::eye_subpath_short: return "eye subpath short";
-        case PathFailure::light_subpath_short: return "light subpath short";
-        case PathFailure::occluded: return "occluded";
-        case PathFailure::zero_bsdf: return "zero BSDF";
-        case PathFailure::outside_film: return "outside the film";
-        case PathFailure::non_finite: return "not finite";
-        case PathFailure::count: break;
-    }
-    return "unknown";
-}
-
 Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor,
                    std::span<const Vertex> eye, std::span<const Vertex> light) {
     if (light.empty()) return hit_emitter(tracer.scene(), eye);

@@ -15,10 +15,8 @@ enum class PathFailure : std::uint8_t {
     occluded,
     zero_bsdf,     // or a shading-normal conflict, or an emitter seen from behind
     outside_film,
-    non_finite,
-    count
+    non_finite
 };
-const char* name(PathFailure failure);
 
 // Densities that the connection alone determines; i counts from the sensor.
 struct Junction {

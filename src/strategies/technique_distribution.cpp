@@ -34,18 +34,21 @@ void TechniqueDistribution::accumulate() {
     for (std::size_t i = 0; i < p_.size(); ++i) length_p_[techniques_[i].k] += p_[i];
 }
 
-int TechniqueDistribution::search(int first, int last, double u) const {
-    const double target = cumulative_[first] + u * (cumulative_[last] - cumulative_[first]);
-    const auto begin = cumulative_.begin() + first + 1, end = cumulative_.begin() + last;
-    return static_cast<int>(std::upper_bound(begin, end, target) - cumulative_.begin()) - 1;
-}
-
 Technique TechniqueDistribution::sample(double u) const {
-    return techniques_[search(0, static_cast<int>(techniques_.size()), u)];
+    const auto begin = cumulative_.begin() + 1, end = cumulative_.end() - 1;
+    return techniques_[std::upper_bound(begin, end, u * cumulative_.back()) - begin];
 }
 
-int TechniqueDistribution::sample_given_length(int k, double u) const {
-    return techniques_[search(first_[k], first_[k + 1], u)].t;
+int TechniqueDistribution::sample_other(int k, int t, double u) const {
+    double left = u * (length_p_[k] - probability(k, t));
+    int chosen = 0;
+    for (int other = 1; other <= k + 1; ++other) {
+        if (other == t) continue;
+        chosen = other;
+        left -= probability(k, other);
+        if (left < 0) break;
+    }
+    return chosen;
 }
 
 }  // namespace keyhole

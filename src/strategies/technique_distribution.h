@@ -24,14 +24,13 @@ class TechniqueDistribution {
     Technique sample(double u) const;
     double probability(int k, int t) const { return p_[index(k, t)]; }
 
-    // Techniques of one length: q(t | k), and whether there is more than one.
-    int sample_given_length(int k, double u) const;
+    // Techniques of one length: q(t | k), whether there is more than one, and one other than t in proportion to q.
+    int sample_other(int k, int t, double u) const;
     double probability_given_length(int k, int t) const { return p_[index(k, t)] / length_p_[k]; }
     bool has_choice(int k) const { return k > 1; }
 
   private:
     int index(int k, int t) const { return first_[k] + (k == 1 ? 0 : t - 1); }
-    int search(int first, int last, double u) const;  // by cumulative probability
     void accumulate();
 
     std::vector<Technique> techniques_;

@@ -1,0 +1,11 @@
+// Renders with Metropolis light transport: bootstrap, many chains in parallel, film.
+#pragma once
+
+#include "render/render.h"
+
+namespace keyhole {
+
+// settings.max_length and settings.chains are resolved already.
+RenderResult render_metropolis(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks);
+
+}  // namespace keyhole

@@ -1,0 +1,79 @@
+#include "strategies/mmlt.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+void draw_uniform(double* u, int first, int last, Rng& rng) {
+    for (int i = first; i < last; ++i) u[i] = rng.uniform();
+}
+
+Failure to_failure(PathFailure failure) {
+    switch (failure) {
+        case PathFailure::none: return Failure::none;
+        case PathFailure::eye_subpath_short: return Failure::eye_subpath_short;
+        case PathFailure::light_subpath_short: return Failure::light_subpath_short;
+        case PathFailure::occluded: return Failure::occluded;
+        case PathFailure::zero_bsdf: return Failure::zero_bsdf;
+        case PathFailure::outside_film: return Failure::outside_film;
+        case PathFailure::non_finite: return Failure::non_finite;
+    }
+    return Failure::other;
+}
+
+// Evaluates y at its coordinates; the proposal's ratio is C(y) / C(x) times `factor`.
+Proposal evaluate(Chart& chart, const PssState& x, PssState& y, double factor) {
+    const Evaluation e = chart.evaluate(y.u);
+    y.set(e);
+    return {y.target / x.target * factor, to_failure(e.failure)};
+}
+
+}  // namespace
+
+PathFailure LargeStep::draw(PssState& y, Rng& rng) const {
+    const Technique technique = techniques_.sample(rng.uniform());
+    y.u.k = technique.k;
+    y.u.t = technique.t;
+    const CoordinateLayout& layout = chart_.layout();
+    draw_uniform(y.u.eye.data(), 0, layout.eye_count(y.u.t), rng);
+    draw_uniform(y.u.light.data(), 0, layout.light_count(y.u.s()), rng);
+    const Evaluation e = chart_.evaluate(y.u);
+    y.set(e);
+    return e.failure;
+}
+
+Proposal LargeStep::propose(PssState& x, PssState& y, Rng& rng) const {
+    const PathFailure failure = draw(y, rng);
+    return {estimate(y) / estimate(x), to_failure(failure)};
+}
+
+template <class Kernel>
+Proposal SmallStep<Kernel>::propose(PssState& x, PssState& y, Rng& rng) const {
+    y.u.k = x.u.k;
+    y.u.t = x.u.t;
+    const CoordinateLayout& layout = chart_.layout();
+    kernel_(x.u.eye.data(), y.u.eye.data(), layout.eye_count(x.u.t), rng);
+    kernel_(x.u.light.data(), y.u.light.data(), layout.light_count(x.u.s()), rng);
+    return evaluate(chart_, x, y, 1);
+}
+
+Proposal TechniqueChange::propose(PssState& x, PssState& y, Rng& rng) const {
+    const int k = x.u.k, t = x.u.t;
+    y.u.k = k;
+    y.u.t = techniques_.sample_other(k, t, rng.uniform());
+    const CoordinateLayout& layout = chart_.layout();
+    const int eye_old = layout.eye_count(t), eye_new = layout.eye_count(y.u.t);
+    const int light_old = layout.light_count(x.u.s()), light_new = layout.light_count(y.u.s());
+    std::copy_n(x.u.eye.data(), std::min(eye_old, eye_new), y.u.eye.data());
+    std::copy_n(x.u.light.data(), std::min(light_old, light_new), y.u.light.data());
+    draw_uniform(y.u.eye.data(), eye_old, eye_new, rng);
+    draw_uniform(y.u.light.data(), light_old, light_new, rng);
+    const double q = techniques_.probability_given_length(k, t), q_new = techniques_.probability_given_length(k, y.u.t);
+    return evaluate(chart_, x, y, q * (1 - q) / (q_new * (1 - q_new)));
+}
+
+template class SmallStep<KelemenKernel>;
+template class SmallStep<GaussianKernel>;
+
+}  // namespace keyhole

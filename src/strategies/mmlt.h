@@ -1,0 +1,66 @@
+// Multiplexed Metropolis light transport [Hachisuka et al. 2014]: primary-sample-space moves within and between the
+// charts of bidirectional techniques. Derivations of the ratios: theory, section 3.
+#pragma once
+
+#include "base/rng.h"
+#include "chain/strategy.h"
+#include "pss/kernels.h"
+#include "strategies/pss_state.h"
+#include "strategies/technique_distribution.h"
+
+namespace keyhole {
+
+using PssStrategy = Strategy<PssState, Rng>;
+
+// k, t ~ P(k, t) and u uniform. The density of the proposal is P(k, t), so
+//     r = [C(y) / P(k_y, t_y)] / [C(x) / P(k_x, t_x)].
+// Every proposal is also an independent estimate of b: C(y) / P(k_y, t_y), 0 if it failed.
+class LargeStep final : public PssStrategy {
+  public:
+    LargeStep(Chart& chart, const TechniqueDistribution& techniques) : chart_(chart), techniques_(techniques) {}
+    std::string_view name() const override { return "large step"; }
+    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
+
+    // Draws an independent state, as the bootstrap does as well.
+    PathFailure draw(PssState& y, Rng& rng) const;
+    // C(y) / P(k_y, t_y) of a state so drawn.
+    double estimate(const PssState& y) const { return y.target / techniques_.probability(y.u.k, y.u.t); }
+
+  private:
+    Chart& chart_;
+    const TechniqueDistribution& techniques_;
+};
+
+// u' = u + symmetric step in the current chart, wrapped: r = C(y) / C(x).
+template <class Kernel>
+class SmallStep final : public PssStrategy {
+  public:
+    SmallStep(Chart& chart, const Kernel& kernel) : chart_(chart), kernel_(kernel) {}
+    std::string_view name() const override { return "small step"; }
+    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
+
+  private:
+    Chart& chart_;
+    Kernel kernel_;
+};
+
+// Same k and same u, another technique t' != t in proportion to q(t' | k): a different path. Coordinates that the chart t'
+// reads and t does not are drawn fresh, and their densities (one) cancel against those forgotten on the way back:
+//     r = [C(y) q(t | k) / (1 - q(t' | k))] / [C(x) q(t' | k) / (1 - q(t | k))].
+class TechniqueChange final : public PssStrategy {
+  public:
+    TechniqueChange(Chart& chart, const TechniqueDistribution& techniques) : chart_(chart), techniques_(techniques) {}
+    std::string_view name() const override { return "technique change"; }
+    double suitability(const PssState& x) const override { return techniques_.has_choice(x.u.k) ? 1 : 0; }
+    bool suitability_varies() const override { return techniques_.techniques().front().k == 1; }
+    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
+
+  private:
+    Chart& chart_;
+    const TechniqueDistribution& techniques_;
+};
+
+extern template class SmallStep<KelemenKernel>;
+extern template class SmallStep<GaussianKernel>;
+
+}  // namespace keyhole
