@@ -7,8 +7,8 @@ namespace {
 
 bool connectable(const Vertex& v) { return v.x.bsdf && v.x.bsdf->traits().smooth; }
 
-// The BSDF at a subpath's last vertex towards unit `d`. `f` includes the cosine: |ns.w_light| at an eye vertex, and at a
-// light vertex |ns.w_light| / |ng.w_light| |ng.w_eye| (shading normals [Veach 1997, 5.3.2]).
+// The BSDF at a subpath's last vertex towards unit `d`. `f` includes the cosine: |ns.w_light| at an eye vertex, and at
+// a light vertex |ns.w_light| / |ng.w_light| |ng.w_eye| (shading normals [Veach 1997, 5.3.2]).
 struct End {
     Spectrum f{0, 0, 0};
     double pdf_next = 0, pdf_prev = 0;  // solid-angle densities of d and of the direction back
@@ -111,8 +111,8 @@ Connection connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const Ve
     }
     const Vec3 o = Scene::offset_origin(x.x, d);
     const bool surface = emitter.traits().surface;
-    const bool seen = y.infinite ? tracer.unoccluded({o, d})
-                                 : tracer.visible(o, surface ? Scene::offset_origin(y.x, -d) : y.x.p);
+    const bool seen =
+        y.infinite ? tracer.unoccluded({o, d}) : tracer.visible(o, surface ? Scene::offset_origin(y.x, -d) : y.x.p);
     if (!seen) {
         c.failure = PathFailure::occluded;
         return c;
@@ -153,8 +153,8 @@ Connection connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::sp
 
 }  // namespace
 
-Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor,
-                   std::span<const Vertex> eye, std::span<const Vertex> light) {
+Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
+                   std::span<const Vertex> light) {
     if (light.empty()) return hit_emitter(tracer.scene(), eye);
     Connection failed;
     failed.failure = PathFailure::zero_bsdf;

@@ -13,7 +13,7 @@ enum class PathFailure : std::uint8_t {
     eye_subpath_short,
     light_subpath_short,
     occluded,
-    zero_bsdf,     // or a shading-normal conflict, or an emitter seen from behind
+    zero_bsdf,  // or a shading-normal conflict, or an emitter seen from behind
     outside_film,
     non_finite
 };
@@ -36,12 +36,12 @@ struct Connection {
 // Subpaths as spans whose last vertex is the one connected. `light` may be empty (s = 0: the eye subpath must end on an
 // emitter), and `eye` may hold the sensor alone (t = 1). k = 1 is sampled by s = 0 only.
 // Everything that is cheap is tested before the shadow ray.
-Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor,
-                   std::span<const Vertex> eye, std::span<const Vertex> light);
+Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
+                   std::span<const Vertex> light);
 
 // Which of a path's techniques take part in the weights.
 enum class Techniques {
-    all,          // t = 1 .. k+1
+    all,            // t = 1 .. k+1
     unidirectional  // t = k and k+1: next-event estimation and hitting the emitter
 };
 

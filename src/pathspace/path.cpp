@@ -55,7 +55,8 @@ Spectrum contribution(const Scene& scene, const Path& path) {
     if (!xk.x.emitter) return Spectrum::Zero();
     const Vertex& x1 = path.x[1];
     // From the sensor: importance per solid angle (or perpendicular area), and the rest of the first geometry term.
-    const auto view = scene.sensor().view({x0.x.p, x0.pdf_fwd}, x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p);
+    const auto view =
+        scene.sensor().view({x0.x.p, x0.pdf_fwd}, x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p);
     if (!view) return Spectrum::Zero();
     Spectrum f = Spectrum::Constant(view->importance * to_measure(x0, x1, x1.infinite ? x1.x.p : direction(x1, x0)));
     for (int i = 1; i < k; ++i) {
@@ -79,9 +80,10 @@ PathDensities densities(const Scene& scene, const RasterWindow& window, const Pa
     PathDensities p{std::vector<double>(k + 1, 0.0), std::vector<double>(k + 1, 0.0)};
     const Vertex &x0 = path.x[0], &x1 = path.x[1], &xk = path.x[k];
     p.eye[0] = x0.pdf_fwd;
-    if (const auto view = scene.sensor().view({x0.x.p, x0.pdf_fwd}, x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p))
-        p.eye[1] = view->raster_per_measure / window.area() *
-                   to_measure(x0, x1, x1.infinite ? x1.x.p : direction(x1, x0));
+    if (const auto view =
+            scene.sensor().view({x0.x.p, x0.pdf_fwd}, x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p))
+        p.eye[1] =
+            view->raster_per_measure / window.area() * to_measure(x0, x1, x1.infinite ? x1.x.p : direction(x1, x0));
     const Emitter& emitter = *xk.x.emitter;
     const EmitterPoint e = emitter_point(xk);
     p.light[k] = scene.emitter_probability(&emitter) * (emitter.traits().delta ? 1 : emitter.pdf_point(e));

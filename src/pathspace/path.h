@@ -24,8 +24,8 @@ Path join(std::span<const Vertex> eye, std::span<const Vertex> light);
 // Does not test visibility. Zero where shading and geometric sides disagree or the sensor does not see x_1.
 Spectrum contribution(const Scene& scene, const Path& path);
 
-// p_t(x) = product over i < t of eye[i] times product over i >= t of light[i]. eye[0] and light[k] hold the densities of
-// the two endpoints; light[0] is 0, as no technique samples the sensor from the light. Dirac factors are left out.
+// p_t(x) = product over i < t of eye[i] times product over i >= t of light[i]. eye[0] and light[k] hold the densities
+// of the two endpoints; light[0] is 0, as no technique samples the sensor from the light. Dirac factors are left out.
 struct PathDensities {
     std::vector<double> eye, light;
 };

@@ -4,10 +4,10 @@
 // directional emitters, an orthographic sensor) with respect to solid angle, or 1 where the direction is fixed. The
 // density of the vertex next to one at infinity is the density on the plane perpendicular to the edge times its cosine.
 //
-// Delta lobes: their Dirac factor is the same from both sides in the measure eta^2 |cos| dw (eta the index of refraction
-// on w's side over the one on the eye's side). A delta event of probability P therefore counts as the solid-angle density
-// P eta^2 |cos w| of its sampled direction, and f as the lobe's coefficient: the Dirac factors left out are the same in
-// every technique and in f, so they cancel exactly in every ratio.
+// Delta lobes: their Dirac factor is the same from both sides in the measure eta^2 |cos| dw (eta the index of
+// refraction on w's side over the one on the eye's side). A delta event of probability P therefore counts as the
+// solid-angle density P eta^2 |cos w| of its sampled direction, and f as the lobe's coefficient: the Dirac factors left
+// out are the same in every technique and in f, so they cancel exactly in every ratio.
 #pragma once
 
 #include "base/spectrum.h"
@@ -20,16 +20,16 @@ struct Vertex {
     SurfacePoint x;  // endpoints: only p (a direction, if infinite), ng, uv, offset, emitter
 
     // Of the subpath the vertex was sampled on; "previous" is the neighbour nearer to that subpath's start.
-    Vec3 w_prev;                        // unit direction to the previous vertex, in the local shading frame
-    double cos_prev = 0;                // its cosine with ng, signed
-    double to_prev = 0;                 // turns a solid-angle density here into the density of the previous vertex
-    double pdf_fwd = 0;                 // density of this vertex as sampled
-    double pdf_rev = 0;                 // its density if sampled from the other end; set by the vertex after next
-    Spectrum throughput{0, 0, 0};       // contribution over density of the subpath that arrives here
-    Spectrum delta_f{0, 0, 0};                      // delta events only: f and
+    Vec3 w_prev;                   // unit direction to the previous vertex, in the local shading frame
+    double cos_prev = 0;           // its cosine with ng, signed
+    double to_prev = 0;            // turns a solid-angle density here into the density of the previous vertex
+    double pdf_fwd = 0;            // density of this vertex as sampled
+    double pdf_rev = 0;            // its density if sampled from the other end; set by the vertex after next
+    Spectrum throughput{0, 0, 0};  // contribution over density of the subpath that arrives here
+    Spectrum delta_f{0, 0, 0};     // delta events only: f and
     double delta_pdf_eye = 0, delta_pdf_light = 0;  // densities of both directions in the sense above
-    bool infinite = false;              // x.p is a unit direction away from the scene
-    bool delta = false;                 // scatters by a delta lobe: cannot be connected
+    bool infinite = false;                          // x.p is a unit direction away from the scene
+    bool delta = false;                             // scatters by a delta lobe: cannot be connected
 };
 
 inline EmitterPoint emitter_point(const Vertex& v) { return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset}; }

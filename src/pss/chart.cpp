@@ -39,8 +39,7 @@ PathFailure Chart::trace_light(const PrimarySample& u) {
     int last = 1;
     for (; last + 1 < s_ && e == Extension::surface; ++last) {
         const auto block = layout_->light_block(coordinates, last);
-        e = extend(tracer_, Mode::light, light_[last - 1], light_[last], light_[last + 1], block.lobe,
-                   block.direction);
+        e = extend(tracer_, Mode::light, light_[last - 1], light_[last], light_[last + 1], block.lobe, block.direction);
     }
     return last + 1 == s_ && e == Extension::surface ? PathFailure::none : PathFailure::light_subpath_short;
 }

@@ -1,6 +1,6 @@
 // Which primary sample coordinate does what. Each discrete choice has a coordinate of its own, each vertex a block of
-// fixed size, and coordinates that the scene never reads do not exist: lens coordinates come with a finite aperture, the
-// emitter's choice with a second emitter, lobe coordinates with BSDFs that choose among lobes.
+// fixed size, and coordinates that the scene never reads do not exist: lens coordinates come with a finite aperture,
+// the emitter's choice with a second emitter, lobe coordinates with BSDFs that choose among lobes.
 //
 // A path of k edges by technique t (t vertices from the eye, s = k + 1 - t from the light) uses a prefix of the eye
 // coordinates and a prefix of the light coordinates:

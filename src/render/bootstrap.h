@@ -16,8 +16,8 @@ inline std::uint64_t stream(StreamUse use, std::uint64_t index) {
 }
 
 struct Bootstrap {
-    RunningMean b;                 // integral of f* over raster area
-    std::vector<PssState> seeds;   // one per chain, in proportion to the target; empty if nothing was found
+    RunningMean b;                // integral of f* over raster area
+    std::vector<PssState> seeds;  // one per chain, in proportion to the target; empty if nothing was found
     std::uint64_t non_finite = 0;
     std::uint64_t rays = 0;
 };

@@ -21,8 +21,7 @@ template <class Word, int FractionBits>
 class FixedPointFilm {
   public:
     explicit FixedPointFilm(const FilmSettings& settings)
-        : settings_(settings),
-          pixels_(static_cast<std::size_t>(settings.crop_width) * settings.crop_height) {}
+        : settings_(settings), pixels_(static_cast<std::size_t>(settings.crop_width) * settings.crop_height) {}
 
     // Adds `value` at a raster position, spread over the pixels by the reconstruction filter. `value` is finite.
     void splat(const Vec2& raster, const Spectrum& value) {

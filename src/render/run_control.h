@@ -15,12 +15,12 @@ class RunControl {
     // construction of this object.
     RunControl(const RenderSettings& settings, const RenderCallbacks& callbacks, std::uint64_t budget);
 
-    // How many units the next pass makes, about half a second's worth; 0: finished or stopped. At least one pass is made.
+    // How many units the next pass makes, about half a second's worth; 0: finished or stopped. At least one pass is
+    // made.
     std::uint64_t next_pass();
 
     // After a pass: reports progress and, when due, a preview. `work_per_unit`: samples or mutations in a unit.
-    void finished(std::uint64_t units, double work_per_unit, double acceptance,
-                  const std::function<Image()>& develop);
+    void finished(std::uint64_t units, double work_per_unit, double acceptance, const std::function<Image()>& develop);
 
     void announce(const char* phase, double fraction) const;
 

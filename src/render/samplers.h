@@ -1,5 +1,5 @@
-// The two reference estimators. Each draws one sample: an eye path through a given raster position and, for bdpt, a light
-// path, and splats all contributions f / p, weighted over the techniques it uses.
+// The two reference estimators. Each draws one sample: an eye path through a given raster position and, for bdpt, a
+// light path, and splats all contributions f / p, weighted over the techniques it uses.
 #pragma once
 
 #include "base/rng.h"

@@ -28,12 +28,14 @@ RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings,
     const FilmSettings& film = scene.film();
     const RasterWindow window(film);
     // One sample of a unit falls into each cell of a grid over the window, at a random place.
-    const int columns = static_cast<int>(std::ceil(window.size.x())), rows = static_cast<int>(std::ceil(window.size.y()));
+    const int columns = static_cast<int>(std::ceil(window.size.x())),
+              rows = static_cast<int>(std::ceil(window.size.y()));
     const double per_unit = static_cast<double>(columns) * rows;
     const auto budget = static_cast<std::uint64_t>(std::ceil(settings.mutations_per_pixel));
     RunControl control(settings, callbacks, budget);
-    tbb::enumerable_thread_specific<Worker> workers(
-        [&] { return Worker{make_sampler(scene, settings), RadianceFilm(film)}; });
+    tbb::enumerable_thread_specific<Worker> workers([&] {
+        return Worker{make_sampler(scene, settings), RadianceFilm(film)};
+    });
 
     auto sample_row = [&](std::uint64_t unit, int row) {
         Worker& worker = workers.local();

@@ -11,13 +11,20 @@ void draw_uniform(double* u, int first, int last, Rng& rng) {
 
 Failure to_failure(PathFailure failure) {
     switch (failure) {
-        case PathFailure::none: return Failure::none;
-        case PathFailure::eye_subpath_short: return Failure::eye_subpath_short;
-        case PathFailure::light_subpath_short: return Failure::light_subpath_short;
-        case PathFailure::occluded: return Failure::occluded;
-        case PathFailure::zero_bsdf: return Failure::zero_bsdf;
-        case PathFailure::outside_film: return Failure::outside_film;
-        case PathFailure::non_finite: return Failure::non_finite;
+        case PathFailure::none:
+            return Failure::none;
+        case PathFailure::eye_subpath_short:
+            return Failure::eye_subpath_short;
+        case PathFailure::light_subpath_short:
+            return Failure::light_subpath_short;
+        case PathFailure::occluded:
+            return Failure::occluded;
+        case PathFailure::zero_bsdf:
+            return Failure::zero_bsdf;
+        case PathFailure::outside_film:
+            return Failure::outside_film;
+        case PathFailure::non_finite:
+            return Failure::non_finite;
     }
     return Failure::other;
 }

@@ -44,8 +44,8 @@ class SmallStep final : public PssStrategy {
     Kernel kernel_;
 };
 
-// Same k and same u, another technique t' != t in proportion to q(t' | k): a different path. Coordinates that the chart t'
-// reads and t does not are drawn fresh, and their densities (one) cancel against those forgotten on the way back:
+// Same k and same u, another technique t' != t in proportion to q(t' | k): a different path. Coordinates that the chart
+// t' reads and t does not are drawn fresh, and their densities (one) cancel against those forgotten on the way back:
 //     r = [C(y) q(t | k) / (1 - q(t' | k))] / [C(x) q(t' | k) / (1 - q(t | k))].
 class TechniqueChange final : public PssStrategy {
   public:

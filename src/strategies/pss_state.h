@@ -7,8 +7,8 @@ namespace keyhole {
 
 struct PssState {
     PrimarySample u;
-    double target = 0;          // C(x) = w_t f* / p_t, the chain's target in chart coordinates
-    Spectrum splat{0, 0, 0};    // f / f*
+    double target = 0;        // C(x) = w_t f* / p_t, the chain's target in chart coordinates
+    Spectrum splat{0, 0, 0};  // f / f*
     Vec2 raster{0, 0};
 
     explicit PssState(const CoordinateLayout& layout) : u(layout) {}

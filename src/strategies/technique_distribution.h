@@ -29,8 +29,10 @@ class TechniqueDistribution {
     double probability_given_length(int k, int t) const { return p_[index(k, t)] / length_p_[k]; }
     bool has_choice(int k) const { return k > 1; }
 
-  private:
+    // Position in techniques().
     int index(int k, int t) const { return first_[k] + (k == 1 ? 0 : t - 1); }
+
+  private:
     void accumulate();
 
     std::vector<Technique> techniques_;
