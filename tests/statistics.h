@@ -1,0 +1,45 @@
+// Statistics shared by the tests: p-values, and the level they are held against.
+#pragma once
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <vector>
+
+namespace keyhole {
+
+// Level of one of `tests` tests such that all of them together raise a false alarm with probability `family_level`
+// (Sidak; exact for independent tests).
+inline double sidak_level(double family_level, int tests) { return -std::expm1(std::log1p(-family_level) / tests); }
+
+// Pearson's chi-square of observed counts against expected ones (same totals). Cells that expect fewer than five are
+// pooled into one; should the pool itself expect fewer, it is tested by the Poisson tail and the two p-values are
+// combined (Bonferroni). A sample where nothing is expected gives 0.
+inline double chi_square_p_value(const std::vector<double>& expected, const std::vector<double>& observed) {
+    double statistic = 0, pool_expected = 0, pool_observed = 0;
+    int cells = 0;
+    const auto add = [&](double e, double o) {
+        statistic += (o - e) * (o - e) / e;
+        ++cells;
+    };
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (expected[i] >= 5) {
+            add(expected[i], observed[i]);
+        } else {
+            pool_expected += expected[i];
+            pool_observed += observed[i];
+        }
+    }
+    double pool_p = 1;
+    if (pool_expected >= 5)
+        add(pool_expected, pool_observed);
+    else if (pool_observed > 0)
+        pool_p = pool_expected > 0 ? boost::math::gamma_p(pool_observed, pool_expected) : 0;
+    if (cells < 2) return pool_p;
+    const boost::math::chi_squared distribution(cells - 1);
+    const double p = boost::math::cdf(boost::math::complement(distribution, statistic));
+    return std::min(1.0, 2 * std::min(p, pool_p));
+}
+
+}  // namespace keyhole
