@@ -9,11 +9,14 @@ struct ReconstructionFilter {
     enum class Type { box, tent, gaussian } type = Type::box;
     double radius = 0.5;  // support is [-radius, radius]
     double stddev = 0.5;  // gaussian only; truncated at its radius, shifted to be zero there, and normalised
+    double scale = 1;     // these two are set by the factories below
+    double shift = 0;
 
     double operator()(double x) const;  // value in one dimension; normalised over its support
     const char* name() const;
 };
 
+// Throw std::invalid_argument for a radius or standard deviation that is not positive.
 ReconstructionFilter make_box_filter(double radius = 0.5);
 ReconstructionFilter make_tent_filter(double radius = 1.0);
 ReconstructionFilter make_gaussian_filter(double stddev = 0.5, double radius = 2.0);
