@@ -13,7 +13,8 @@ class Texture {
   public:
     virtual ~Texture() = default;
     virtual Spectrum eval(const Vec2& uv) const = 0;
-    // Partial derivatives of the luminance with respect to u and v (bump maps).
+    // Partial derivatives of the luminance with respect to u and v (bump maps); of the bilinear interpolant of a
+    // bitmap, whatever its filter.
     virtual Vec2 gradient(const Vec2& uv) const = 0;
     // Average over one period, for light selection and reports.
     virtual Spectrum mean() const = 0;
@@ -25,10 +26,11 @@ class Texture {
 enum class TextureFilter { nearest, bilinear };
 enum class TextureWrap { repeat, mirror, clamp };
 
-// uv are transformed by `to_uv` (a 2-D affine map in homogeneous form) before the lookup. v = 0 is the image's bottom.
+// Lookups are at to_uv (u, 1 - v), a 2-D affine map in homogeneous form, with y = 0 the top of the image: v = 0 is its
+// bottom, and the order is Mitsuba's, whose OBJ reader flips v.
 struct BitmapParams {
-    std::string filename;  // any file OpenImageIO reads
-    bool raw = false;      // true: values are linear already; false: 8-bit files are decoded from sRGB
+    std::string filename;  // any file OpenImageIO reads; alpha is ignored
+    bool raw = false;      // true: values are linear already; false: files of integers are decoded from sRGB
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     Eigen::Matrix3d to_uv = Eigen::Matrix3d::Identity();
