@@ -2,10 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <vector>
+
+#include "incomplete_gamma.h"
 
 namespace keyhole {
 
@@ -31,15 +31,13 @@ inline double chi_square_p_value(const std::vector<double>& expected, const std:
             pool_observed += observed[i];
         }
     }
-    double pool_p = 1;
-    if (pool_expected >= 5)
-        add(pool_expected, pool_observed);
-    else if (pool_observed > 0)
-        pool_p = pool_expected > 0 ? boost::math::gamma_p(pool_observed, pool_expected) : 0;
+    if (pool_expected == 0 && pool_observed > 0) return 0;
+    if (pool_expected >= 5) add(pool_expected, pool_observed);
+    const bool small_pool = pool_expected > 0 && pool_expected < 5;
+    const double pool_p = small_pool && pool_observed > 0 ? IncompleteGamma(pool_observed, pool_expected).p : 1;
     if (cells < 2) return pool_p;
-    const boost::math::chi_squared distribution(cells - 1);
-    const double p = boost::math::cdf(boost::math::complement(distribution, statistic));
-    return std::min(1.0, 2 * std::min(p, pool_p));
+    const double p = chi_square_tail(statistic, cells - 1);
+    return small_pool ? std::min(1.0, 2 * std::min(p, pool_p)) : p;
 }
 
 }  // namespace keyhole
