@@ -3,46 +3,11 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
 namespace keyhole {
-
-// Mean and variance of independent samples, one after the other [Welford 1962]; of two sets, merged [Chan et al. 1979].
-class RunningMean {
-  public:
-    void add(double x) {
-        ++count_;
-        const double delta = x - mean_;
-        mean_ += delta / static_cast<double>(count_);
-        squares_ += delta * (x - mean_);
-    }
-    void merge(const RunningMean& other) {
-        if (other.count_ == 0) return;
-        const double n = static_cast<double>(count_), m = static_cast<double>(other.count_);
-        const double delta = other.mean_ - mean_;
-        count_ += other.count_;
-        mean_ += delta * (m / (n + m));
-        squares_ += other.squares_ + delta * delta * (n * m / (n + m));
-    }
-
-    std::uint64_t count() const { return count_; }
-    double mean() const { return mean_; }
-    // Unbiased; 0 for fewer than two samples.
-    double variance() const { return count_ > 1 ? squares_ / static_cast<double>(count_ - 1) : 0; }
-    // Standard error of mean(); infinite for fewer than two samples.
-    double standard_error() const {
-        return count_ > 1 ? std::sqrt(variance() / static_cast<double>(count_))
-                          : std::numeric_limits<double>::infinity();
-    }
-
-  private:
-    std::uint64_t count_ = 0;
-    double mean_ = 0, squares_ = 0;
-};
 
 // Systematic resampling: `count` indices in ascending order. Index i occurs floor(e) or ceil(e) times and on average e
 // times, where e = count * weights[i] / sum of weights, given `u` uniform in [0, 1).

@@ -47,9 +47,10 @@ class Chain {
     // proposed one a, whichever becomes the next. The current state's weight is held until it is left, so
     // that at most one state is splatted in a step.
     //
+    // `mixture` is a Mixture<State, Random>, or anything with its select, strategy and completed_ratio.
     // A ratio that is negative, infinite or NaN counts as Failure::non_finite and is rejected.
-    template <RandomSource Random, Sink<State> Film>
-    StepOutcome step(const Mixture<State, Random>& mixture, Random& random, Film& film, Diagnostics& diagnostics) {
+    template <class MixtureType, RandomSource Random, Sink<State> Film>
+    StepOutcome step(const MixtureType& mixture, Random& random, Film& film, Diagnostics& diagnostics) {
         State& x = slots_[current_];
         State& y = slots_[1 - current_];
         StepOutcome outcome;

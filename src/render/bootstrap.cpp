@@ -3,6 +3,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "chain/bootstrap.h"
+
 namespace keyhole {
 namespace {
 

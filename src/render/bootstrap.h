@@ -4,7 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/rng.h"
-#include "chain/bootstrap.h"
+#include "chain/running_mean.h"
 #include "strategies/mmlt.h"
 
 namespace keyhole {
