@@ -32,7 +32,7 @@ class Orthographic final : public Sensor {
     SensorRay ray(const SensorPoint&, const Vec2& raster) const override {
         const Vec3 local((half_width_ - raster.x()) / half_width_, (half_height_ - raster.y()) / half_width_,
                          near_clip_);
-        return {to_world_ * local, direction_};
+        return {to_world_ * local, direction_, (far_clip_ - near_clip_) * to_world_.linear().col(2).norm(), density_};
     }
     std::optional<SensorView> view(const SensorPoint&, const Vec3& x) const override {
         const Vec3 local = to_local_ * x;

@@ -28,7 +28,9 @@ class Projection {
     SensorRay ray(const Vec3& p, const Vec2& shift, const Vec2& raster) const {
         const Vec2 image = (center_ - raster) / pixels_;
         const Vec3 d = to_world({image.x() - shift.x(), image.y() - shift.y(), 1});
-        return {p + d * near_clip_, d.normalized()};
+        const double inv_cos = d.norm();
+        return {p + d * near_clip_, d / inv_cos, (far_clip_ - near_clip_) * inv_cos,
+                sqr(pixels_) * inv_cos * inv_cos * inv_cos};
     }
 
     std::optional<SensorView> view(const Vec3& p, const Vec2& shift, const Vec3& x, double aperture_pdf) const {
