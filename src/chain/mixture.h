@@ -43,7 +43,8 @@ class Mixture {
             if (!(c.weight >= 0 && std::isfinite(c.weight)))
                 throw std::invalid_argument("the weight of a strategy must be finite and not negative");
             total_weight_ += c.weight;
-            varies_ = varies_ || c.strategy->suitability_varies();
+            varying_.push_back(c.strategy->suitability_varies());
+            varies_ = varies_ || varying_.back();
         }
         if (!(total_weight_ > 0 && std::isfinite(total_weight_)))
             throw std::invalid_argument("the weights of a mixture must have a positive, finite sum");
@@ -58,14 +59,15 @@ class Mixture {
         const double total = varies_ ? suited_weights(x, weights) : total_weight_;
         if (!(total > 0)) return {};
         double left = random.uniform() * total;
-        Selection chosen;
+        std::size_t chosen = 0;
+        double chosen_weight = 0;
         for (std::size_t i = 0; i < components_.size(); ++i) {
             const double w = varies_ ? weights[i] : components_[i].weight;
-            if (w > 0) chosen = {i, w / total};  // rounding may leave `left` just above zero at the end
+            if (w > 0) chosen = i, chosen_weight = w;  // rounding may leave `left` just above zero at the end
             left -= w;
             if (left < 0) break;
         }
-        return chosen;
+        return {chosen, chosen_weight / total};
     }
 
     // P(i | x); zero if the strategy does not apply.
@@ -78,21 +80,25 @@ class Mixture {
 
     // The ratio of a move to y that `selection` proposed, completed with the probabilities of choosing the strategy.
     double completed_ratio(double ratio, const Selection& selection, const State& y) const {
-        return varies_ ? ratio * (probability(selection.index, y) / selection.probability) : ratio;
+        if (!varies_) return ratio;
+        std::array<double, max_size> weights;
+        const double total = suited_weights(y, weights);
+        return total > 0 ? ratio * weights[selection.index] / (total * selection.probability) : 0;
     }
 
   private:
     double suited_weights(const State& x, std::array<double, max_size>& weights) const {
         double total = 0;
         for (std::size_t i = 0; i < components_.size(); ++i) {
-            const double weight = components_[i].weight;
-            weights[i] = weight > 0 ? weight * components_[i].strategy->suitability(x) : 0;
+            weights[i] = components_[i].weight;
+            if (varying_[i]) weights[i] *= components_[i].strategy->suitability(x);
             total += weights[i];
         }
         return total;
     }
 
     std::vector<Component> components_;
+    std::vector<char> varying_;  // whether the suitability of each one varies
     double total_weight_ = 0;
     bool varies_ = false;
 };
