@@ -87,6 +87,7 @@ class Scene {
     Scene();
     static double side(const Vec3& ng, const Vec3& w) { return w.dot(ng) > 0 ? 1 : -1; }
 
+    std::vector<std::unique_ptr<const Shape>> shapes_;
     std::unique_ptr<EmbreeScene> embree_;
     std::vector<std::shared_ptr<const Emitter>> owned_emitters_;
     std::vector<const Emitter*> emitters_;

@@ -8,6 +8,8 @@
 
 namespace keyhole {
 
+class AnalyticShape;
+
 struct ShapeOptions {
     std::string id;
     Affine to_world = Affine::Identity();
@@ -49,7 +51,10 @@ class SceneBuilder {
     std::unique_ptr<Scene> build();
 
   private:
-    struct Parts;
+    struct Parts;  // scene_parts.h
+    void add_shape(std::shared_ptr<const Mesh> mesh, std::unique_ptr<AnalyticShape> analytic,
+                   const ShapeOptions& options);
+    static void set_selection_probabilities(Scene& scene, std::span<const std::shared_ptr<Emitter>> emitters);
     std::unique_ptr<Parts> parts_;
 };
 

@@ -62,6 +62,7 @@ class Shape {
     BsdfPtr bsdf;
     std::shared_ptr<Emitter> emitter;  // area emitter or null
     bool flip_normals = false;
+    bool needs_uv = true, needs_tangents = false;  // what fill and sample must write
 };
 
 }  // namespace keyhole

@@ -1,0 +1,42 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+
+#include "scene/embree.h"
+#include "scene/shapes/mesh_shape.h"
+
+namespace keyhole {
+
+Scene::Scene() = default;
+Scene::~Scene() = default;
+
+bool Scene::intersect(const Ray& ray, SurfacePoint& x) const {
+    ShapeHit hit;
+    const Shape* shape = embree_->intersect({ray.o + ray.offset, ray.d, ray.tnear, ray.tfar}, hit);
+    if (!shape) return false;
+    shape->fill(ray, hit, x);
+    x.bsdf = shape->bsdf.get();
+    x.emitter = shape->emitter.get();
+    return true;
+}
+
+bool Scene::unoccluded(const Ray& ray) const {
+    return embree_->unoccluded({ray.o + ray.offset, ray.d, ray.tnear, ray.tfar});
+}
+
+// The float error at the far end grows with the coordinates of both ends, its offset only with its own: so the far end
+// is the one with the larger coordinates.
+bool Scene::unoccluded(const Vec3& a, const Vec3& b) const {
+    const bool swap = b.squaredNorm() < a.squaredNorm();
+    const Vec3& from = swap ? b : a;
+    const Vec3& to = swap ? a : b;
+    return embree_->unoccluded({from, to - from, 0, 1});
+}
+
+std::uint32_t Scene::choose_emitter(double u) const {
+    if (emitters_.size() == 1) return 0;
+    const auto found = std::upper_bound(emitter_cdf_.begin(), emitter_cdf_.end(), u);
+    return static_cast<std::uint32_t>(found - emitter_cdf_.begin());
+}
+
+}  // namespace keyhole

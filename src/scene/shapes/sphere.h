@@ -1,0 +1,22 @@
+// Sphere. u is the azimuth about the local z axis over 2 pi, v the polar angle over pi.
+#pragma once
+
+#include "scene/shapes/analytic_shape.h"
+
+namespace keyhole {
+
+class Sphere final : public AnalyticShape {
+  public:
+    // `to_world` may rotate, reflect, translate and scale uniformly. Throws std::invalid_argument.
+    Sphere(const Vec3& center, double radius, const Affine& to_world);
+
+  private:
+    Roots roots(const Vec3& o, const Vec3& d) const override;
+    bool contains(const Vec3&) const override { return true; }
+    Point project(const Vec3& p) const override;
+    Parameters parameters(const Vec3& p) const override;
+    Vec3 sample_local(const Vec2& u) const override;
+    std::pair<Vec3, Vec3> local_bounds() const override { return {{-1, -1, -1}, {1, 1, 1}}; }
+};
+
+}  // namespace keyhole
