@@ -3,7 +3,7 @@
 #
 #   scripts/render.sh [SCENE] [OPTIONS]
 #
-#   SCENE    a scene file, a folder with a scene.xml, or the name of a folder of scenes/ (default: cornell-box)
+#   SCENE    a scene file, a folder with a scene.xml, or the name of a scene of scenes/ (default: cornell-box)
 #   OPTIONS  options of `keyhole render`, such as --time 60s, --size 640x480, -o picture.exr
 #
 # The picture is written to out/SCENE.exr (linear) and out/SCENE.png, unless -o says otherwise.
@@ -17,12 +17,11 @@ case ${1:-} in
     -*) ;;
     ?*) scene=$1 && shift ;;
 esac
-[ -e "$scene" ] || [ ! -d "$root/scenes/$scene" ] || scene=$root/scenes/$scene
-[ ! -d "$scene" ] || scene=$scene/scene.xml
-[ -f "$scene" ] || fail "no scene '$scene': give a scene file or one of: $(cd "$root/scenes" && echo *)"
-
-name=$(basename "$(dirname "$(realpath "$scene")")")
-[ "$(basename "$scene")" = scene.xml ] || name=$(basename "$scene" .xml)
+[ -e "$scene" ] || scene=$root/scenes/${scene%.xml}.xml
+[ ! -d "$scene" ] || scene=$(realpath "$scene")/scene.xml
+[ -f "$scene" ] || fail "no scene '$scene': give a scene file or one of: $(cd "$root/scenes" && echo *.xml)"
+name=$(basename "$scene" .xml)
+case $name in scene | scene_*) name=$(basename "$(dirname "$(realpath "$scene")")") ;; esac
 
 ensure_requirements "${CXX:-c++}"
 (cd "$root" && build_preset release build/release keyhole)
@@ -32,4 +31,4 @@ for option in "$@"; do
     case $option in -o* | --output*) output=() ;; esac
 done
 mkdir -p "$root/out"
-"$root/build/release/keyhole" render "$scene" "${output[@]}" "$@"
+exec "$root/build/release/keyhole" render "$scene" "${output[@]}" "$@"

@@ -83,7 +83,7 @@ class Mixture {
         if (!varies_) return ratio;
         std::array<double, max_size> weights;
         const double total = suited_weights(y, weights);
-        return total > 0 ? ratio * weights[selection.index] / (total * selection.probability) : 0;
+        return ratio * (total > 0 ? weights[selection.index] / (total * selection.probability) : 0);
     }
 
   private:
