@@ -2,12 +2,19 @@
 // `u` is in [0,1)^2; densities are in the measure each comment names; inverses return values in [0,1).
 #pragma once
 
-#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "base/vec.h"
 
 namespace keyhole {
+
+// condition ? a : b, never compiled to a branch: for conditions that no predictor can learn.
+inline double select(bool condition, double a, double b) {
+    const std::uint64_t mask = 0 - static_cast<std::uint64_t>(condition);
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) & mask) | (std::bit_cast<std::uint64_t>(b) & ~mask));
+}
 
 // cos(pi t / 4) and sin(pi t / 4) for |t| <= 1: Chebyshev interpolants in t^2, truncation errors 5e-17 and 3e-18.
 inline double cos_quarter_pi(double t) {
@@ -36,14 +43,13 @@ struct PointOnDisk {
 inline PointOnDisk square_to_disk_and_radius(const Vec2& u) {
     const double a = 2 * u.x() - 1, b = 2 * u.y() - 1;
     const bool wide = std::abs(a) > std::abs(b);
-    const double r = wide ? a : b, t = (wide ? b : a) / (r == 0 ? 1 : r);
+    const double r = select(wide, a, b), t = select(wide, b, a) / (r == 0 ? 1 : r);
     const double along = r * cos_quarter_pi(t), across = r * sin_quarter_pi(t);
-    return {{wide ? along : across, wide ? across : along}, std::abs(r)};
+    return {{select(wide, along, across), select(wide, across, along)}, std::abs(r)};
 }
 inline Vec2 square_to_disk(const Vec2& u) { return square_to_disk_and_radius(u).p; }
 inline double square_to_disk_pdf() { return inv_pi; }
-inline Vec2 disk_to_square(const Vec2& p) {
-    const double r = p.norm();
+inline Vec2 disk_to_square(const Vec2& p, double r) {  // r = |p|
     double a, b;
     if (std::abs(p.x()) > std::abs(p.y())) {
         a = std::copysign(r, p.x());
@@ -54,6 +60,7 @@ inline Vec2 disk_to_square(const Vec2& p) {
     }
     return {clamp01((a + 1) / 2), clamp01((b + 1) / 2)};
 }
+inline Vec2 disk_to_square(const Vec2& p) { return disk_to_square(p, p.norm()); }
 
 // Cosine-weighted hemisphere about +z. pdf: solid angle, cos/pi.
 inline Vec3 square_to_cosine_hemisphere(const Vec2& u) {
@@ -61,7 +68,12 @@ inline Vec3 square_to_cosine_hemisphere(const Vec2& u) {
     return {d.p.x(), d.p.y(), std::sqrt((1 - d.r) * (1 + d.r))};
 }
 inline double square_to_cosine_hemisphere_pdf(const Vec3& w) { return w.z() > 0 ? w.z() * inv_pi : 0; }
-inline Vec2 cosine_hemisphere_to_square(const Vec3& w) { return disk_to_square({w.x(), w.y()}); }
+inline Vec2 cosine_hemisphere_to_square(const Vec3& w) {
+    // Near the horizon the distance from the disk's edge is better known from z than from x and y.
+    const Vec2 p(w.x(), w.y());
+    const double r = p.norm();
+    return disk_to_square(p, w.z() < 0.5 ? 1 - w.z() * w.z() / (1 + r) : r);
+}
 
 // Uniform sphere. pdf: solid angle, 1/(4 pi).
 inline Vec3 square_to_sphere(const Vec2& u) {
@@ -74,10 +86,9 @@ inline double azimuth_to_unit(double x, double y) {
     return clamp01(phi < 0 ? phi + 1 : phi);
 }
 inline Vec2 sphere_to_square(const Vec3& w) {
-    // Near the poles 1 - z loses all digits; there x^2 + y^2 = 4u(1-u) keeps them.
-    const double r2 = w.x() * w.x() + w.y() * w.y();
-    const double small = r2 / (2 * (1 + std::sqrt(std::max(0.0, 1 - r2))));
-    return {clamp01(std::abs(w.z()) < 0.5 ? (1 - w.z()) / 2 : (w.z() > 0 ? small : 1 - small)),
+    // Near the poles 1 - |z| loses all digits; x^2 + y^2 = (1 - |z|) (1 + |z|) keeps them.
+    const double z = std::abs(w.z()), near_pole = (w.x() * w.x() + w.y() * w.y()) / (2 * (1 + z));
+    return {clamp01(z < 0.5 ? (1 - w.z()) / 2 : (w.z() > 0 ? near_pole : 1 - near_pole)),
             azimuth_to_unit(w.x(), w.y())};
 }
 
@@ -89,7 +100,7 @@ inline Vec3 square_to_cone(const Vec2& u, double cos_max) {
 inline double square_to_cone_pdf(double cos_max) { return inv_pi / (2 * (1 - cos_max)); }
 inline Vec2 cone_to_square(const Vec3& w, double cos_max) {
     const double r2 = w.x() * w.x() + w.y() * w.y();
-    const double h = w.z() > 0 ? r2 / (1 + std::sqrt(std::max(0.0, 1 - r2))) : 1 - w.z();
+    const double h = w.z() > 0.5 ? r2 / (1 + w.z()) : 1 - w.z();
     return {clamp01(h / (1 - cos_max)), azimuth_to_unit(w.x(), w.y())};
 }
 

@@ -37,7 +37,7 @@ double fresnel_conductor(double cos_i, double eta, double k) {
     const double cos2 = cos_i * cos_i, sin2 = (1 - cos_i) * (1 + cos_i);
     const double real = (eta - k) * (eta + k) - sin2, imaginary = 2 * eta * k;
     // The larger of a and b by a sum, the other from 2 a b = imaginary part.
-    const double larger = std::sqrt(0.5 * (std::hypot(real, imaginary) + std::abs(real)));
+    const double larger = std::sqrt(0.5 * (std::sqrt(real * real + imaginary * imaginary) + std::abs(real)));
     const double smaller = larger > 0 ? 0.5 * imaginary / larger : 0;
     const double a = real >= 0 ? larger : smaller, b2 = real >= 0 ? smaller * smaller : larger * larger;
     const double r_s = ratio(sqr(a - cos_i) + b2, sqr(a + cos_i) + b2);
