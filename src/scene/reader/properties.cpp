@@ -50,9 +50,9 @@ std::string Properties::title() const {
     return type ? plugin_.tag + " '" + *type + "'" : "<" + plugin_.tag + ">";
 }
 
-std::string Properties::of(const std::string& name) { return "parameter '" + name + "' of " + title(); }
+std::string Properties::of(const std::string& name) const { return "parameter '" + name + "' of " + title(); }
 
-void Properties::fail(const Child& child, const std::string& message) {
+void Properties::fail(const Child& child, const std::string& message) const {
     throw InputError(child.given->where, of(child.name) + " " + message);
 }
 
@@ -192,7 +192,7 @@ void Properties::finish() {
         const std::string message =
             child.name.empty()
                 ? "unexpected <" + child.given->tag + "> without a name in " + title() + "; " + valid_names("", asked_)
-                : "unknown " + of(child.name) + "; " + valid_names(child.name, asked_);
+                : "unknown " + of(*child.given->attribute("name")) + "; " + valid_names(child.name, asked_);
         if (!notes_.lenient) throw InputError(child.given->where, message);
         notes_.warnings.push_back(place_text(child.given->where) + ": " + message);
     }

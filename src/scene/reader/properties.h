@@ -47,8 +47,8 @@ class Properties {
     Properties& operator=(const Properties&) = delete;
 
     const Element& element() const { return plugin_; }
-    std::string title() const;                // "bsdf 'diffuse'"
-    std::string of(const std::string& name);  // "parameter 'alpha' of bsdf 'roughconductor'"
+    std::string title() const;                      // "bsdf 'diffuse'"
+    std::string of(const std::string& name) const;  // "parameter 'alpha' of bsdf 'roughconductor'"
 
     // The parameter, or null. It counts as read. All typed functions throw InputError at the parameter if it has
     // another type or lies outside the range, and at the plugin if it is required (no fallback) and missing.
@@ -83,7 +83,7 @@ class Properties {
     void finish();
 
     Notes& notes() { return notes_; }
-    [[noreturn]] void fail(const Child& child, const std::string& message);
+    [[noreturn]] void fail(const Child& child, const std::string& message) const;
 
   private:
     const std::string& value(const Child& child, const std::vector<std::string>& tags);

@@ -83,7 +83,10 @@ Element read_xml(const std::string& filename, const SourceLocation& from) {
         if (node.type() == pugi::node_element)
             throw InputError(positions.at(node.offset_debug() - 1),
                              "a second root element <" + std::string(node.name()) + ">; a file holds one <scene>");
-        throw InputError(positions.at(0), "text outside of the <scene> element: '" + std::string(node.value()) + "'");
+        const std::string value = node.value();
+        const auto blank = std::min(value.find_first_not_of(" \t\r\n"), value.size());
+        throw InputError(positions.at(node.offset_debug() + static_cast<std::ptrdiff_t>(blank)),
+                         "text outside of the <scene> element: '" + value.substr(blank) + "'");
     }
     Element scene = convert(root, positions, 0);
     if (scene.tag != "scene")
