@@ -137,4 +137,38 @@ inline Vec2 triangle_to_square(const Vec2& b) {
                          : Vec2(clamp01(b.x() + b.y()), clamp01(2 * b.y()));
 }
 
+// Density on [0,1) proportional to the line from `a` >= 0 at 0 to `b` >= 0 at 1; uniform if both are 0.
+inline double unit_to_linear(double u, double a, double b) {
+    const double root = a + std::sqrt(a * a + u * (b * b - a * a));
+    return root > 0 ? clamp01(u * (a + b) / root) : u;
+}
+inline double unit_to_linear_pdf(double x, double a, double b) {
+    return a + b > 0 ? 2 * (a + x * (b - a)) / (a + b) : 1;
+}
+inline double linear_to_unit(double x, double a, double b) {
+    return a + b > 0 ? clamp01(x * (a * (2 - x) + b * x) / (a + b)) : x;
+}
+
+// The bilinear function on the unit square with these values >= 0 at the corners (x, y).
+struct Bilinear {
+    double v00, v10, v01, v11;
+
+    double operator()(const Vec2& p) const { return left(p.y()) + p.x() * (right(p.y()) - left(p.y())); }
+    double mean() const { return (v00 + v10 + v01 + v11) / 4; }
+    double left(double y) const { return v00 + y * (v01 - v00); }
+    double right(double y) const { return v10 + y * (v11 - v10); }
+};
+// Density on the unit square proportional to `f`; uniform if it is zero.
+inline Vec2 square_to_bilinear(const Vec2& u, const Bilinear& f) {
+    const double y = unit_to_linear(u.y(), f.v00 + f.v10, f.v01 + f.v11);
+    return {unit_to_linear(u.x(), f.left(y), f.right(y)), y};
+}
+inline double square_to_bilinear_pdf(const Vec2& p, const Bilinear& f) {
+    const double mean = f.mean();
+    return mean > 0 ? f(p) / mean : 1;
+}
+inline Vec2 bilinear_to_square(const Vec2& p, const Bilinear& f) {
+    return {linear_to_unit(p.x(), f.left(p.y()), f.right(p.y())), linear_to_unit(p.y(), f.v00 + f.v10, f.v01 + f.v11)};
+}
+
 }  // namespace keyhole
