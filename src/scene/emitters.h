@@ -15,10 +15,11 @@ class Shape;
 std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, ColorInput radiance);
 std::unique_ptr<Emitter> make_point_emitter(const Vec3& position, const Spectrum& intensity);
 // Falls off linearly in angle from `beam_width` to `cutoff_angle` (degrees, half-angles), as Mitsuba's.
-// `to_world` maps the local axis +z. The scale of `to_world` is ignored.
+// `to_world` maps the local axis +z. The scale of `to_world` is ignored. Throws std::invalid_argument for a singular
+// one and for angles outside 0 <= beam_width <= cutoff_angle <= 180.
 std::unique_ptr<Emitter> make_spot_emitter(const Affine& to_world, const Spectrum& intensity, double cutoff_angle,
                                            double beam_width);
-// `direction`: in which the light travels.
+// `direction`: in which the light travels, of any length but zero (std::invalid_argument).
 std::unique_ptr<Emitter> make_directional_emitter(const Vec3& direction, const Spectrum& irradiance);
 std::unique_ptr<Emitter> make_constant_emitter(const Spectrum& radiance);
 
@@ -27,7 +28,9 @@ struct EnvmapParams {
     double scale = 1;
     Affine to_world = Affine::Identity();
 };
-// Directions are drawn by the bilinearly interpolated image times the sine. Throws InputError as make_bitmap does.
+// Radiance is bilinear between texel centres. Directions are drawn with a density close to its luminance: bilinear
+// between the same corners in azimuth and in the cosine of the polar angle, exact and positive where the luminance is.
+// Throws InputError as make_bitmap does and std::invalid_argument for a negative scale or a sheared to_world.
 std::unique_ptr<Emitter> make_envmap_emitter(const EnvmapParams& params);
 
 }  // namespace keyhole

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/srgb.h"
 
 namespace keyhole {
 namespace {
@@ -70,6 +71,17 @@ ImageFile read_image_file(const std::string& filename) {
     } catch (const std::bad_alloc&) {
         fail(filename, "it does not fit into memory");
     }
+}
+
+std::vector<float> linear_rgb(const ImageFile& image) {
+    const std::size_t texels = static_cast<std::size_t>(image.width) * image.height;
+    const auto value = [&](std::size_t i) {
+        const double stored = image.bytes.empty() ? image.floats[i] : image.bytes[i] / 255.0;
+        return static_cast<float>(image.integer ? srgb_decode(stored) : stored);
+    };
+    std::vector<float> rgb(3 * texels);
+    for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = value(image.channels == 3 ? i : i / 3);
+    return rgb;
 }
 
 }  // namespace keyhole

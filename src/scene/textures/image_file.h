@@ -20,4 +20,7 @@ struct ImageFile {
 // cannot be read, is not a flat image of 1 to 4 channels, or has values that are negative or not finite. Thread-safe.
 ImageFile read_image_file(const std::string& filename);
 
+// Three linear values a texel: files of integers are decoded from sRGB.
+std::vector<float> linear_rgb(const ImageFile& image);
+
 }  // namespace keyhole

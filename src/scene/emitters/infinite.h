@@ -1,0 +1,36 @@
+// What the emitters at infinity share: rays start on a disk that covers the scene, perpendicular to their direction.
+#pragma once
+
+#include "base/frame.h"
+#include "base/warp.h"
+#include "scene/emitter.h"
+
+namespace keyhole {
+
+class InfiniteEmitter : public Emitter {
+  public:
+    InfiniteEmitter() { traits_.infinite = true; }
+
+    EmissionRay sample_ray(const EmitterPoint& e, const Vec2& u) const final {
+        const Vec2 q = square_to_disk(u);
+        // The disk stays clear of the sphere, also after rounding to float.
+        const Vec3 o = Frame::from_normal(e.p).to_world({q.x(), q.y(), 1.1});
+        return {center_ + radius_ * o, -e.p, 1 / disk_area()};
+    }
+    double pdf_ray(const EmitterPoint&, const Vec3&) const final { return 1 / disk_area(); }
+
+    // A scene without extent counts as a unit sphere.
+    void set_scene_bounds(const Vec3& center, double radius) final {
+        center_ = center;
+        radius_ = radius > 0 ? radius : 1;
+    }
+
+  protected:
+    double disk_area() const { return pi * sqr(radius_); }
+
+  private:
+    Vec3 center_{0, 0, 0};
+    double radius_ = 1;
+};
+
+}  // namespace keyhole
