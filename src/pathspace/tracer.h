@@ -6,14 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "scene/replay.h"
 #include "scene/scene.h"
 
 namespace keyhole {
-
-struct RecordedRay {
-    Ray ray;
-    bool occlusion;
-};
 
 class Tracer {
   public:

@@ -6,69 +6,12 @@
 
 #include <cmath>
 
-#include "chain/metropolis.h"
 #include "render/bootstrap.h"
-#include "render/film.h"
+#include "render/chain_worker.h"
 #include "render/run_control.h"
 
 namespace keyhole {
 namespace {
-
-constexpr std::size_t large_step_index = 0;
-
-Mixture<PssState, Rng> make_mixture(Chart& chart, const TechniqueDistribution& techniques,
-                                    const RenderSettings& settings) {
-    using Component = Mixture<PssState, Rng>::Component;
-    const double large = settings.large_step_probability, change = settings.technique_change_probability;
-    std::vector<Component> components;
-    components.push_back({std::make_unique<LargeStep>(chart, techniques), large});
-    if (settings.kernel == StepKernel::kelemen) {
-        const KelemenKernel kernel(settings.kelemen_s1, settings.kelemen_s2);
-        components.push_back({std::make_unique<SmallStep<KelemenKernel>>(chart, kernel), 1 - large - change});
-    } else {
-        const GaussianKernel kernel(settings.gaussian_sigma);
-        components.push_back({std::make_unique<SmallStep<GaussianKernel>>(chart, kernel), 1 - large - change});
-    }
-    if (settings.max_length > 1) components.push_back({std::make_unique<TechniqueChange>(chart, techniques), change});
-    return Mixture<PssState, Rng>(std::move(components));
-}
-
-struct FilmSink {
-    MetropolisFilm& film;
-    void splat(const PssState& state, double weight) { film.splat(state.raster, state.splat * weight); }
-};
-
-// What one thread works with.
-struct Worker {
-    Chart chart;
-    Mixture<PssState, Rng> mixture;
-    MetropolisFilm film;
-    Diagnostics diagnostics;
-
-    Worker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-           const RenderSettings& settings)
-        : chart(scene, layout),
-          mixture(make_mixture(chart, techniques, settings)),
-          film(scene.film()),
-          diagnostics(mixture.size()) {}
-};
-
-// One chain and its random numbers: all there is to save of it.
-struct RunningChain {
-    Chain<PssState> chain;
-    Rng rng;
-    RunningMean b;  // of its large steps
-};
-
-void advance(RunningChain& running, Worker& worker, const TechniqueDistribution& techniques, std::uint64_t mutations) {
-    FilmSink sink{worker.film};
-    for (std::uint64_t i = 0; i < mutations; ++i) {
-        const StepOutcome outcome = running.chain.step(worker.mixture, running.rng, sink, worker.diagnostics);
-        if (outcome.strategy != large_step_index || outcome.idle) continue;
-        const PssState& y = running.chain.proposed(outcome);
-        running.b.add(outcome.failure == Failure::none ? y.target / techniques.probability(y.u.k, y.u.t) : 0);
-    }
-}
 
 void report(const Diagnostics& total, const Mixture<PssState, Rng>& mixture, RenderStatistics& statistics) {
     for (std::size_t i = 0; i < mixture.size(); ++i) {
@@ -122,8 +65,8 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
             {Chain<PssState>(std::move(bootstrap.seeds[i])), Rng(settings.seed, stream(StreamUse::chain, i)), {}});
     bootstrap.seeds.clear();
 
-    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
-        [&] { return std::make_unique<Worker>(scene, layout, techniques, settings); });
+    tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker>> workers(
+        [&] { return std::make_unique<ChainWorker>(scene, layout, techniques, settings); });
     auto estimate_b = [&] {
         RunningMean b = bootstrap.b;
         for (const RunningChain& c : chains) b.merge(c.b);
@@ -145,7 +88,7 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
 
     while (const std::uint64_t mutations = control.next_pass()) {
         tbb::parallel_for(std::uint64_t{0}, chain_count,
-                          [&](std::uint64_t i) { advance(chains[i], *workers.local(), techniques, mutations); });
+                          [&](std::uint64_t i) { workers.local()->advance(chains[i], mutations); });
         control.finished(mutations, static_cast<double>(chain_count), count().total().mean_acceptance(), develop);
     }
 

@@ -22,6 +22,8 @@ void check(bool valid, const char* message) {
     if (!valid) throw std::invalid_argument(message);
 }
 
+}  // namespace
+
 RenderSettings resolve(const Scene& scene, RenderSettings s) {
     check(std::isfinite(s.seconds) && std::isfinite(s.mutations_per_pixel) && s.seconds >= 0 &&
               s.mutations_per_pixel >= 0 && (s.seconds > 0) != (s.mutations_per_pixel > 0),
@@ -39,8 +41,6 @@ RenderSettings resolve(const Scene& scene, RenderSettings s) {
     check(s.kelemen_s1 > 0 && s.kelemen_s2 >= s.kelemen_s1 && s.gaussian_sigma > 0, "step sizes must be positive");
     return s;
 }
-
-}  // namespace
 
 RenderResult render(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks) {
     const RenderSettings resolved = resolve(scene, settings);

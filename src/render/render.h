@@ -76,7 +76,11 @@ struct RenderResult {
     RenderStatistics statistics;
 };
 
-// Throws std::invalid_argument for settings that make no sense together.
+// The settings with everything that was left to default filled in from the scene. Throws std::invalid_argument for
+// settings that make no sense together.
+RenderSettings resolve(const Scene& scene, RenderSettings settings);
+
+// Throws as resolve() does.
 RenderResult render(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks = {});
 
 }  // namespace keyhole

@@ -1,0 +1,100 @@
+// The step kernels are symmetric on the torus and stay on it.
+#include "pss/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "statistics.h"
+
+namespace keyhole {
+namespace {
+
+constexpr double family_level = 1e-4;  // false alarms of this file, by Sidak over its chi-square tests
+constexpr int chi_square_tests = 4;
+
+template <class Kernel>
+class Kernels : public testing::Test {};
+using KernelTypes = testing::Types<KelemenKernel, GaussianKernel>;
+TYPED_TEST_SUITE(Kernels, KernelTypes);
+
+// Steps of +d and -d are equally likely: counts of |step| by bins, one histogram for each sign.
+TYPED_TEST(Kernels, StepsAreSymmetric) {
+    const TypeParam kernel;
+    Rng rng(1);
+    constexpr int n = 8, bins = 40, rounds = 50000;
+    std::vector<double> plus(bins, 0.0), minus(bins, 0.0);
+    double x[n], y[n];
+    std::fill_n(x, n, 0.5);
+    for (int i = 0; i < rounds; ++i) {
+        kernel(x, y, n, rng);
+        for (int j = 0; j < n; ++j) {
+            const double step = y[j] - x[j];
+            const int bin = std::min(bins - 1, static_cast<int>(std::abs(step) * 1500));
+            ++(step > 0 ? plus : minus)[bin];
+        }
+    }
+    // Given the size, the sign is a fair coin: (plus - minus)^2 / (plus + minus) is chi-square with one degree each.
+    double statistic = 0;
+    int degrees = 0;
+    for (int i = 0; i < bins; ++i) {
+        if (plus[i] + minus[i] < 20) continue;
+        statistic += sqr(plus[i] - minus[i]) / (plus[i] + minus[i]);
+        ++degrees;
+    }
+    ASSERT_GT(degrees, 10);
+    const double p = boost::math::cdf(complement(boost::math::chi_squared(degrees), statistic));
+    EXPECT_GT(p, sidak_level(family_level, chi_square_tests));
+}
+
+// Coordinates that start uniform stay uniform, also at the seam, and inside [0, 1).
+TYPED_TEST(Kernels, KeepTheUniformDistribution) {
+    const TypeParam kernel;
+    Rng rng(2);
+    constexpr int n = 5, bins = 50, rounds = 60000;
+    std::vector<double> observed(bins, 0.0);
+    double x[n], y[n];
+    for (int i = 0; i < rounds; ++i) {
+        for (double& c : x) c = rng.uniform();
+        for (int step = 0; step < 3; ++step) {
+            kernel(x, y, n, rng);
+            std::copy_n(y, n, x);
+        }
+        for (const double c : x) {
+            ASSERT_GE(c, 0);
+            ASSERT_LT(c, 1);
+            ++observed[static_cast<int>(c * bins)];
+        }
+    }
+    const std::vector<double> expected(bins, static_cast<double>(n) * rounds / bins);
+    EXPECT_GT(chi_square_p_value(expected, observed), sidak_level(family_level, chi_square_tests));
+}
+
+TEST(KelemenKernel, StepsLieBetweenItsBounds) {
+    const double s1 = 1.0 / 512, s2 = 1.0 / 16;
+    const KelemenKernel kernel(s1, s2);
+    Rng rng(3);
+    double x[4] = {0.5, 0.5, 0.5, 0.5}, y[4], smallest = 1, largest = 0;
+    for (int i = 0; i < 100000; ++i) {
+        kernel(x, y, 4, rng);
+        for (int j = 0; j < 4; ++j) {
+            smallest = std::min(smallest, std::abs(y[j] - x[j]));
+            largest = std::max(largest, std::abs(y[j] - x[j]));
+        }
+    }
+    EXPECT_NEAR(smallest, s1, 1e-4 * s1);
+    EXPECT_NEAR(largest, s2, 1e-4 * s2);
+}
+
+TEST(WrapUnit, NeverReturnsOne) {
+    for (const double x : {-1e-20, -0.0, 0.0, 1.0, -1.0, 1 - 0x1p-53, 2.75, -3.25}) {
+        EXPECT_GE(wrap_unit(x), 0);
+        EXPECT_LT(wrap_unit(x), 1);
+    }
+    EXPECT_DOUBLE_EQ(wrap_unit(2.75), 0.75);
+    EXPECT_DOUBLE_EQ(wrap_unit(-0.25), 0.75);
+}
+
+}  // namespace
+}  // namespace keyhole

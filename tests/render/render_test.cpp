@@ -1,0 +1,89 @@
+#include "render/render.h"
+
+#include <gtest/gtest.h>
+
+#include "own_scenes.h"
+
+namespace keyhole {
+namespace {
+
+class Renders : public testing::TestWithParam<Integrator> {};
+
+TEST_P(Renders, TheSameBitsWithAnyNumberOfThreads) {
+    const auto scene = own_scene("keyhole-room", 24, 16, {{"hole", "0.2"}});
+    RenderSettings settings;
+    settings.integrator = GetParam();
+    settings.mutations_per_pixel = 40;
+    settings.chains = 50;
+    settings.bootstrap_samples = 5000;
+    settings.max_length = 5;
+    settings.threads = 1;
+    const Image one = render(*scene, settings).image;
+    for (const int threads : {2, 7}) {
+        settings.threads = threads;
+        EXPECT_EQ(render(*scene, settings).image.rgb, one.rgb) << threads << " threads";
+    }
+    settings.seed = 1;
+    EXPECT_NE(render(*scene, settings).image.rgb, one.rgb);
+}
+
+TEST_P(Renders, AStoppedRunKeepsWhatItHas) {
+    const auto scene = own_scene("cornell-box");
+    RenderSettings settings;
+    settings.integrator = GetParam();
+    settings.seconds = 60;
+    settings.bootstrap_samples = 5000;
+    RenderCallbacks callbacks;
+    int asked = 0;
+    callbacks.stop = [&] { return ++asked > 2; };
+    const RenderResult result = render(*scene, settings, callbacks);
+    EXPECT_TRUE(result.statistics.interrupted);
+    EXPECT_GT(result.statistics.mutations, 0u);
+    EXPECT_GT(*std::max_element(result.image.rgb.begin(), result.image.rgb.end()), 0);
+}
+
+TEST_P(Renders, BIsTheMeanOfTheImage) {
+    const auto scene = own_scene("cornell-box");
+    RenderSettings settings;
+    settings.integrator = GetParam();
+    settings.mutations_per_pixel = 500;
+    const RenderResult result = render(*scene, settings);
+    double mean = 0;
+    for (std::size_t i = 0; i < result.image.rgb.size(); i += 3)
+        mean += luminance({result.image.rgb[i], result.image.rgb[i + 1], result.image.rgb[i + 2]});
+    mean /= static_cast<double>(result.image.rgb.size()) / 3;
+    EXPECT_NEAR(mean, result.statistics.b, 1e-5 * mean);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Renders, testing::Values(Integrator::path, Integrator::bdpt, Integrator::mmlt),
+                         [](const auto& info) {
+                             return info.param == Integrator::path   ? "path"
+                                    : info.param == Integrator::bdpt ? "bdpt"
+                                                                     : "mmlt";
+                         });
+
+TEST(Render, MaximalLengthComesFromTheScene) {
+    const auto scene = own_scene("cornell-box", 4, 4, {{"max_depth", "3"}});
+    RenderSettings settings;
+    settings.mutations_per_pixel = 1;
+    settings.bootstrap_samples = 1000;
+    EXPECT_EQ(render(*scene, settings).statistics.max_length, 3);
+}
+
+TEST(Render, RejectsSettingsThatMakeNoSense) {
+    const auto scene = own_scene("cornell-box", 4, 4);
+    RenderSettings settings;
+    EXPECT_THROW(render(*scene, settings), std::invalid_argument);  // neither time nor mutations
+    settings.mutations_per_pixel = settings.seconds = 1;
+    EXPECT_THROW(render(*scene, settings), std::invalid_argument);
+    settings.seconds = 0;
+    settings.min_length = 5;
+    settings.max_length = 4;
+    EXPECT_THROW(render(*scene, settings), std::invalid_argument);
+    settings.max_length = 6;
+    settings.large_step_probability = 0;
+    EXPECT_THROW(render(*scene, settings), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace keyhole
