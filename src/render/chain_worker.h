@@ -1,7 +1,7 @@
 // What one thread runs chains with.
 #pragma once
 
-#include "chain/bootstrap.h"
+#include "chain/running_mean.h"
 #include "chain/metropolis.h"
 #include "render/film.h"
 #include "render/render.h"

@@ -5,7 +5,7 @@
 // is the replay's time over the mutations' time.
 #pragma once
 
-#include "chain/bootstrap.h"
+#include "chain/running_mean.h"
 #include "render/render.h"
 
 namespace keyhole {

@@ -111,10 +111,7 @@ class EmbreeScene {
     // The nearest surface; null if there is none.
     const Shape* intersect(const EmbreeQuery& query, ShapeHit& hit) const {
         Context context(*this, query);
-        RTCRayHit r;
-        set_ray(query, r.ray);
-        r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        RTCRayHit r = ray_hit(query);
         embree_intersect(top_->handle(), context, r);
         if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return nullptr;
         hit.primitive = r.hit.primID;
@@ -143,6 +140,14 @@ class EmbreeScene {
         const EmbreeQuery& query;
     };
     const EmbreeInstance& instance(unsigned id) const { return *instances_[id]; }
+    RTCScene handle() const { return top_->handle(); }
+    static RTCRayHit ray_hit(const EmbreeQuery& query) {
+        RTCRayHit r;
+        set_ray(query, r.ray);
+        r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        return r;
+    }
 
   private:
     static void store_floats(const Vec3& v, double w, float* out) {

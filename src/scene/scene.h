@@ -72,6 +72,7 @@ class Scene {
     double emitter_probability(const Emitter* emitter) const { return emitter->selection_probability(); }
     const Emitter* environment() const { return environment_; }
 
+    const EmbreeScene& embree() const { return *embree_; }
     const Sensor& sensor() const { return *sensor_; }
     const FilmSettings& film() const { return film_; }
     const Requirements& requirements() const { return requirements_; }
