@@ -1,0 +1,128 @@
+// `keyhole render`
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/command.h"
+#include "app/interrupt.h"
+#include "app/outputs.h"
+#include "app/render_options.h"
+#include "app/report.h"
+#include "base/units.h"
+
+namespace keyhole {
+namespace {
+
+std::string scene_summary(const LoadedScene& loaded) {
+    const SceneStatistics& s = loaded.scene->statistics();
+    const FilmSettings& film = loaded.scene->film();
+    return fmt::format("{} triangles, {} emitters, {}x{} pixels; read in {}, built in {}", s.triangles, s.emitters,
+                       film.crop_width, film.crop_height, format_duration(loaded.seconds_reading),
+                       format_duration(loaded.seconds_building));
+}
+
+void print_scene(const RenderOptions& options, const LoadedScene& loaded, ProgressLine& line) {
+    for (const std::string& warning : loaded.warnings) line.warn(warning);
+    if (!options.verbose) return;
+    fmt::print(stderr, "{}: {}\n", options.scene.filename, scene_summary(loaded));
+    for (const std::string& unused : loaded.unused) fmt::print(stderr, "unused: {}\n", unused);
+}
+
+void print_strategies(const RenderStatistics& statistics) {
+    for (const StrategyStatistics& s : statistics.strategies) {
+        std::string failures;
+        for (const auto& [kind, count] : s.failures)
+            failures += fmt::format("{}{} {}", failures.empty() ? "; failures: " : ", ", kind, count);
+        fmt::print("  {:<17} {:>8} proposals, {:5.1f}% accepted{}\n", s.name,
+                   format_count(static_cast<double>(s.proposals)), 100 * s.mean_acceptance, failures);
+    }
+}
+
+void print_summary(const RenderOptions& options, const Json& report, const RenderStatistics& s) {
+    const Json& numbers = report.at("statistics");
+    const char* unit = work_unit(options.settings.integrator);
+    const std::string acceptance =
+        overall_acceptance(s) < 0 ? "" : fmt::format(", {:.1f}% accepted", 100 * overall_acceptance(s));
+    fmt::print("{} in {}: {:.4g} {} per pixel, {} {}/s{}\n", s.interrupted ? "interrupted" : "rendered",
+               format_duration(s.seconds_bootstrap + s.seconds_render), numbers.at("mutations_per_pixel").get<double>(),
+               unit, format_count(numbers.at("mutations_per_second").get<double>()), unit, acceptance);
+    fmt::print("mean luminance {:.6g}, standard error {:.2g}\n", s.b, s.b_standard_error);
+    if (!options.verbose) return;
+    fmt::print("{} rays/s, {} threads, {} CPU, peak memory {}\n",
+               format_count(numbers.at("rays_per_second").get<double>()), s.threads, format_duration(s.cpu_seconds),
+               format_bytes(s.peak_memory_bytes));
+    print_strategies(s);
+}
+
+void print_files(const Outputs& outputs) {
+    for (const std::string& name : outputs.images()) fmt::print("wrote {}\n", name);
+    fmt::print("wrote {}\n", outputs.report());
+}
+
+RenderCallbacks make_callbacks(const Outputs& outputs, const Json& run, const InterruptGuard& interrupt,
+                               ProgressLine& line) {
+    RenderCallbacks callbacks;
+    callbacks.progress = [&line](const Progress& progress) { line.show(progress); };
+    callbacks.stop = [&interrupt] { return interrupt.signal() != 0; };
+    // A preview that cannot be written must not end the run: the final image may find room again.
+    callbacks.preview = [&outputs, &run, &line, warned = false](const Image& image) mutable {
+        try {
+            outputs.write_preview(image, run);
+        } catch (const std::exception& e) {
+            if (!std::exchange(warned, true)) line.warn(std::string("no preview: ") + e.what());
+        }
+    };
+    return callbacks;
+}
+
+int run_render(const RenderOptions& options) {
+    std::unique_ptr<tbb::global_control> threads;
+    if (options.settings.threads > 0)
+        threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                        static_cast<std::size_t>(options.settings.threads));
+    const Outputs outputs(options.outputs, options.scene.filename, options.exposure);
+    const LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
+    ProgressLine line(options.verbosity(), work_unit(options.settings.integrator));
+    print_scene(options, loaded, line);
+
+    Json report = describe_run(options.scene, loaded, options.settings);
+    const InterruptGuard interrupt(!options.quiet);
+    const RenderResult result =
+        render(*loaded.scene, options.settings, make_callbacks(outputs, report, interrupt, line));
+    line.clear();
+    const RenderStatistics& statistics = result.statistics;
+    std::vector<std::string> warnings = loaded.warnings;
+    for (const std::string& warning : statistics.warnings) {
+        line.warn(warning);
+        warnings.push_back(warning);
+    }
+    if (interrupt.signal() != 0 && statistics.mutations == 0) {
+        line.warn("interrupted before the first pass; there is no image to write");
+        return exit_signal + interrupt.signal();
+    }
+    add_statistics(report, options.settings, *loaded.scene, statistics);
+    report["warnings"] = warnings;
+    // Files first: whatever happens to the terminal, they are safe.
+    const std::vector<std::string> failures = outputs.write(result.image, report);
+    for (const std::string& failure : failures) print_error(failure);
+    if (!options.quiet) print_summary(options, report, statistics);
+    if (!failures.empty()) return exit_failure;
+    if (!options.quiet) print_files(outputs);
+    return interrupt.signal() != 0 ? exit_signal + interrupt.signal() : exit_success;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& keyhole, Runner& runner) {
+    const auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = keyhole.add_subcommand("render", "Render a scene to an image");
+    add_render_options(*command, *options);
+    command->callback([command, options, &runner] {
+        complete_render_options(*command, *options);
+        runner = [options] { return run_render(*options); };
+    });
+}
+
+}  // namespace keyhole

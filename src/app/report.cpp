@@ -1,0 +1,156 @@
+#include "app/report.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+
+#include "app/version.h"
+
+namespace keyhole {
+namespace {
+
+Json scene_json(const SceneOptions& options, const LoadedScene& loaded) {
+    return {{"file", options.filename},
+            {"hash", fmt::format("{:016x}", loaded.scene->content_hash())},
+            {"defines", options.reader.defines},
+            {"lenient", options.reader.lenient},
+            {"triangles", loaded.scene->statistics().triangles},
+            {"seconds_reading", loaded.seconds_reading},
+            {"seconds_building", loaded.seconds_building},
+            {"unused", loaded.unused}};
+}
+
+Json mmlt_json(const RenderSettings& s) {
+    Json json = {{"chains", s.chains},
+                 {"bootstrap_samples", s.bootstrap_samples},
+                 {"large_step_probability", s.large_step_probability},
+                 {"technique_change_probability", s.technique_change_probability},
+                 {"kernel", kernel_name(s.kernel)}};
+    if (s.kernel == StepKernel::gaussian) {
+        json["gaussian_sigma"] = s.gaussian_sigma;
+    } else {
+        json["kelemen_s1"] = s.kelemen_s1;
+        json["kelemen_s2"] = s.kelemen_s2;
+    }
+    return json;
+}
+
+// As asked for; 0 where the default was left.
+Json settings_json(const RenderSettings& s) {
+    Json json = {{"integrator", integrator_name(s.integrator)},
+                 {"seed", s.seed},
+                 {"seconds", s.seconds},
+                 {"mutations_per_pixel", s.mutations_per_pixel},
+                 {"min_length", s.min_length},
+                 {"max_length", s.max_length},
+                 {"threads", s.threads}};
+    if (s.integrator == Integrator::mmlt) json.update(mmlt_json(s));
+    return json;
+}
+
+Json strategy_json(const StrategyStatistics& s) {
+    return {{"name", s.name},
+            {"proposals", s.proposals},
+            {"accepted", s.accepted},
+            {"mean_acceptance", s.mean_acceptance},
+            {"failures", s.failures}};
+}
+
+double per_second(std::uint64_t count, double seconds) {
+    return seconds > 0 ? static_cast<double>(count) / seconds : 0;
+}
+
+// JSON values as metadata text, strings without quotes.
+std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
+}  // namespace
+
+Json film_json(const FilmSettings& film) {
+    return {{"width", film.width},
+            {"height", film.height},
+            {"crop", {film.crop_x, film.crop_y, film.crop_width, film.crop_height}},
+            {"filter", film.filter.name()},
+            {"filter_radius", film.filter.radius}};
+}
+
+const char* integrator_name(Integrator integrator) {
+    switch (integrator) {
+        case Integrator::path:
+            return "path";
+        case Integrator::bdpt:
+            return "bdpt";
+        case Integrator::mmlt:
+            break;
+    }
+    return "mmlt";
+}
+
+const char* kernel_name(StepKernel kernel) { return kernel == StepKernel::kelemen ? "kelemen" : "gaussian"; }
+
+const char* work_unit(Integrator integrator) { return integrator == Integrator::mmlt ? "mutations" : "samples"; }
+
+double overall_acceptance(const RenderStatistics& statistics) {
+    double proposals = 0, expected = 0;
+    for (const StrategyStatistics& s : statistics.strategies) {
+        proposals += static_cast<double>(s.proposals);
+        expected += static_cast<double>(s.proposals) * s.mean_acceptance;
+    }
+    return proposals > 0 ? expected / proposals : -1;
+}
+
+std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+
+Json describe_run(const SceneOptions& options, const LoadedScene& loaded, const RenderSettings& settings) {
+    return {{"versions", versions()},
+            {"started", utc_now()},
+            {"scene", scene_json(options, loaded)},
+            {"film", film_json(loaded.scene->film())},
+            {"settings", settings_json(settings)}};
+}
+
+void add_statistics(Json& report, const RenderSettings& settings, const Scene& scene, const RenderStatistics& s) {
+    const double pixels = static_cast<double>(scene.film().crop_width) * scene.film().crop_height;
+    Json json = {{"complete", !s.interrupted},
+                 {"work_unit", work_unit(settings.integrator)},
+                 {"mutations", s.mutations},
+                 {"mutations_per_pixel", static_cast<double>(s.mutations) / pixels},
+                 {"mutations_per_second", per_second(s.mutations, s.seconds_render)},
+                 {"rays", s.rays},
+                 {"rays_per_second", per_second(s.rays, s.seconds_render)},
+                 {"seconds_bootstrap", s.seconds_bootstrap},
+                 {"seconds_render", s.seconds_render},
+                 {"cpu_seconds", s.cpu_seconds},
+                 {"b", s.b},
+                 {"b_standard_error", s.b_standard_error}};
+    if (overall_acceptance(s) >= 0) json["acceptance"] = overall_acceptance(s);
+    json["chains"] = s.chains;
+    json["threads"] = s.threads;
+    json["max_length"] = s.max_length;
+    json["non_finite"] = s.non_finite;
+    json["peak_memory_bytes"] = s.peak_memory_bytes;
+    json["strategies"] = Json::array();
+    for (const StrategyStatistics& strategy : s.strategies) json["strategies"].push_back(strategy_json(strategy));
+    report["finished"] = utc_now();
+    report["statistics"] = std::move(json);
+}
+
+std::map<std::string, std::string> image_metadata(const Json& report) {
+    std::map<std::string, std::string> metadata = {
+        {"Software", "Keyhole " + version()},
+        {"keyhole:version", version()},
+        {"keyhole:scene", text_of(report.at("scene").at("file"))},
+        {"keyhole:scene_hash", text_of(report.at("scene").at("hash"))},
+        {"keyhole:run", report.dump()},
+    };
+    for (const char* name : {"integrator", "seed"})
+        metadata[std::string("keyhole:") + name] = text_of(report.at("settings").at(name));
+    if (!report.contains("statistics")) return metadata;
+    for (const char* name : {"complete", "mutations", "mutations_per_pixel", "max_length", "chains", "b",
+                             "b_standard_error", "acceptance", "seconds_render", "non_finite"})
+        if (report["statistics"].contains(name))
+            metadata[std::string("keyhole:") + name] = text_of(report["statistics"][name]);
+    return metadata;
+}
+
+}  // namespace keyhole
