@@ -139,7 +139,8 @@ void add_diff_command(CLI::App& keyhole, Runner& runner) {
              "The error that gets the last colour [default: the 99.9th percentile]", true);
     const auto choose = [options](std::size_t i) { options->metrics.push_back(metric_list()[i]); };
     CLI::Option* metric =
-        add_choice(*command, "--metric", metric_names(), choose, "Print this number alone; repeatable, one line each");
+        add_choice(*command, "--metric", metric_names(), choose, "Print this number alone; repeatable, one line each")
+            ->take_all();
     command->add_flag("--json", options->json, "Print everything as JSON")->excludes(metric);
     command->footer(footer());
     command->callback([options, &runner] { runner = [options] { return run_diff(*options); }; });

@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <new>
+#include <stdexcept>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -18,8 +19,9 @@ Exit codes: 0 done; 1 failure while running; 2 options or input not valid;
 128 + signal number when a signal ended the run.)";
 
 std::string version_text() {
+    const nlohmann::ordered_json all = versions();
     std::string text;
-    for (const auto& [name, value] : versions().items())
+    for (const auto& [name, value] : all.items())
         text += fmt::format("{}{} {}", text.empty() ? "" : "\n", name, value.get<std::string>());
     return text;
 }
@@ -85,6 +87,9 @@ int main(int argc, char** argv) {
     try {
         return keyhole::run(argc, argv);
     } catch (const keyhole::InputError& e) {
+        keyhole::print_error(e.what());
+        return keyhole::exit_bad_input;
+    } catch (const std::invalid_argument& e) {  // settings that render() refuses
         keyhole::print_error(e.what());
         return keyhole::exit_bad_input;
     } catch (const std::bad_alloc&) {

@@ -32,8 +32,9 @@ std::string write_or_rescue(const std::string& filename, const std::function<voi
 
 std::string scene_name(const std::string& scene_filename) {
     const fs::path path = fs::absolute(scene_filename);
-    const std::string folder = path.parent_path().filename().string();
-    return path.stem() == "scene" && !folder.empty() ? folder : path.stem().string();
+    const std::string stem = path.stem().string(), folder = path.parent_path().filename().string();
+    const bool says_nothing = stem == "scene" || stem.starts_with("scene_v");
+    return says_nothing && !folder.empty() ? folder : stem;
 }
 
 Outputs::Outputs(std::vector<std::string> names, const std::string& scene_filename, double exposure)

@@ -33,7 +33,7 @@ class Outputs {
     double exposure_;
 };
 
-// "scenes/cornell-box.xml" gives "cornell-box"; "scenes/veach-ajar/scene.xml" gives "veach-ajar".
+// "scenes/cornell-box.xml" gives "cornell-box"; "scenes/veach-ajar/scene.xml" gives "veach-ajar", as does scene_v3.xml.
 std::string scene_name(const std::string& scene_filename);
 
 }  // namespace keyhole

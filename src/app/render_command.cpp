@@ -45,7 +45,7 @@ void print_summary(const RenderOptions& options, const Json& report, const Rende
     const char* unit = work_unit(options.settings.integrator);
     const std::string acceptance =
         overall_acceptance(s) < 0 ? "" : fmt::format(", {:.1f}% accepted", 100 * overall_acceptance(s));
-    fmt::print("{} in {}: {:.4g} {} per pixel, {} {}/s{}\n", s.interrupted ? "interrupted" : "rendered",
+    fmt::print("{} in {}: {:.6g} {} per pixel, {} {}/s{}\n", s.interrupted ? "interrupted" : "rendered",
                format_duration(s.seconds_bootstrap + s.seconds_render), numbers.at("mutations_per_pixel").get<double>(),
                unit, format_count(numbers.at("mutations_per_second").get<double>()), unit, acceptance);
     fmt::print("mean luminance {:.6g}, standard error {:.2g}\n", s.b, s.b_standard_error);

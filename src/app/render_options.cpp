@@ -11,6 +11,7 @@ namespace keyhole {
 namespace {
 
 constexpr double default_mutations_per_pixel = 64;
+constexpr int longest_path = 256;  // of render()
 
 constexpr const char* length_group = "Length of the run";
 constexpr const char* path_group = "Paths";
@@ -39,6 +40,7 @@ void add_output_options(CLI::App& command, RenderOptions& options) {
     add_parsed(command, "-o,--output", "FILE", output,
                "Image to write, .exr (32-bit float) or .png (8-bit sRGB); repeatable. A report with .json goes beside "
                "the first [default: the scene's name with .exr, in the current folder]")
+        ->take_all()
         ->group(output_group);
     add_real(command, "--exposure", options.exposure, -64, 64, "Brightness of PNG images in stops [default: 0]")
         ->group(output_group);
@@ -78,10 +80,10 @@ void add_path_options(CLI::App& command, RenderSettings& settings) {
     add_choice(command, "-i,--integrator", {"mmlt", "bdpt", "path"}, integrator,
                "Multiplexed Metropolis light transport, bidirectional path tracing, or path tracing [default: mmlt]")
         ->group(path_group);
-    add_integer(command, "--max-length", settings.max_length, 1, 1024,
+    add_integer(command, "--max-length", settings.max_length, 1, longest_path,
                 "Most edges of a path: 1 sees lights, 2 adds direct light [default: the scene file's, else 12]")
         ->group(path_group);
-    add_integer(command, "--min-length", settings.min_length, 1, 1024, "Fewest edges of a path [default: 1]")
+    add_integer(command, "--min-length", settings.min_length, 1, longest_path, "Fewest edges of a path [default: 1]")
         ->group(path_group);
 }
 
@@ -142,9 +144,9 @@ void complete_render_options(const CLI::App& command, RenderOptions& options) {
     if (settings.max_length > 0 && settings.max_length < settings.min_length)
         throw InputError(
             {}, fmt::format("--max-length {} is below --min-length {}", settings.max_length, settings.min_length));
-    if (settings.kelemen_s1 >= settings.kelemen_s2)
+    if (settings.kelemen_s1 > settings.kelemen_s2)
         throw InputError(
-            {}, fmt::format("--kelemen-s1 {} is not below --kelemen-s2 {}", settings.kelemen_s1, settings.kelemen_s2));
+            {}, fmt::format("--kelemen-s1 {} is above --kelemen-s2 {}", settings.kelemen_s1, settings.kelemen_s2));
     if (settings.large_step_probability + settings.technique_change_probability > 1)
         throw InputError({}, "--large-step and --technique-change sum to more than 1");
 }
