@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
     add_render_command(keyhole, runner);
     add_diff_command(keyhole, runner);
     add_info_command(keyhole, runner);
+    add_bench_command(keyhole, runner);
     try {
         keyhole.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
