@@ -58,7 +58,7 @@ double solid_angle(const Case& c, const Vec3& m) { return c.alpha_x * c.alpha_y 
 
 // Integral of g(m) over the upper hemisphere of normals, on polar slopes r = v / (1 - v), by the midpoint rule.
 template <class G>
-double integrate(const Case& c, const G& g, int rings = 600, int spokes = 360) {
+double integrate(const Case& c, const G& g, int rings = 400, int spokes = 240) {
     double sum = 0;
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < spokes; ++j) {
