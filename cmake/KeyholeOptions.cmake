@@ -17,6 +17,9 @@ endif()
 if(KEYHOLE_SANITIZE)
   target_compile_options(keyhole_options INTERFACE -fsanitize=${KEYHOLE_SANITIZE} -fno-omit-frame-pointer
                                                    -fno-sanitize-recover=all)
+  if(KEYHOLE_SANITIZE MATCHES thread)
+    target_compile_definitions(keyhole_options INTERFACE KEYHOLE_THREAD_SANITIZER)
+  endif()
   target_link_options(keyhole_options INTERFACE -fsanitize=${KEYHOLE_SANITIZE})
 endif()
 

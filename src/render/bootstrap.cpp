@@ -1,8 +1,8 @@
 #include "render/bootstrap.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include <algorithm>
 
+#include "base/parallel.h"
 #include "chain/bootstrap.h"
 
 namespace keyhole {
@@ -24,8 +24,9 @@ using Workers = tbb::enumerable_thread_specific<std::unique_ptr<Worker>>;
 
 template <class Body>
 void for_each_sample(std::uint64_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, count, 256), [&](const auto& range) {
-        for (std::uint64_t i = range.begin(); i < range.end(); ++i) body(i);
+    constexpr std::uint64_t chunk = 256;
+    parallel_for((count + chunk - 1) / chunk, [&](std::uint64_t c) {
+        for (std::uint64_t i = c * chunk; i < std::min(count, (c + 1) * chunk); ++i) body(i);
     });
 }
 

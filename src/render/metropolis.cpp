@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
+#include "base/parallel.h"
 #include "render/bootstrap.h"
 #include "render/chain_worker.h"
 #include "render/run_control.h"
@@ -87,8 +87,7 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
     };
 
     while (const std::uint64_t mutations = control.next_pass()) {
-        tbb::parallel_for(std::uint64_t{0}, chain_count,
-                          [&](std::uint64_t i) { workers.local()->advance(chains[i], mutations); });
+        parallel_for(chain_count, [&](std::uint64_t i) { workers.local()->advance(chains[i], mutations); });
         control.finished(mutations, static_cast<double>(chain_count), count().total().mean_acceptance(), develop);
     }
 

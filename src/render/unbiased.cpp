@@ -1,10 +1,10 @@
 #include "render/unbiased.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
+#include "base/parallel.h"
 #include "render/run_control.h"
 #include "render/samplers.h"
 
@@ -52,9 +52,8 @@ RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings,
     };
 
     while (const std::uint64_t units = control.next_pass()) {
-        tbb::parallel_for(std::uint64_t{0}, units * rows, [&](std::uint64_t job) {
-            sample_row(control.done() + job / rows, static_cast<int>(job % rows));
-        });
+        parallel_for(units * rows,
+                     [&](std::uint64_t job) { sample_row(control.done() + job / rows, static_cast<int>(job % rows)); });
         control.finished(units, per_unit, -1, develop);
     }
 

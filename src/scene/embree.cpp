@@ -1,10 +1,9 @@
 #include "scene/embree.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <stdexcept>
 
+#include "base/parallel.h"
 #include "scene/shapes/analytic_shape.h"
 #include "scene/shapes/mesh_shape.h"
 
@@ -127,7 +126,7 @@ void EmbreeScene::add_instance(const EmbreeGroup& group, const Shape* shape, con
 }
 
 void EmbreeScene::commit() {
-    tbb::parallel_for(std::size_t{0}, groups_.size(), [&](std::size_t i) { groups_[i]->commit(); });
+    parallel_for(groups_.size(), [&](std::size_t i) { groups_[i]->commit(); });
     top_->commit();
     if (!error_.empty()) throw std::runtime_error("Embree: " + error_);
 }

@@ -1,9 +1,9 @@
 // SceneBuilder::build: shapes, emitters and Embree's hierarchy out of the collected parts.
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "base/parallel.h"
 #include "scene/embree.h"
 #include "scene/scene_parts.h"
 
@@ -51,7 +51,7 @@ void SceneBuilder::Parts::choose_instanced_meshes() {
 
 void SceneBuilder::Parts::make_shapes() {
     choose_instanced_meshes();
-    tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
+    parallel_for(items.size(), [&](std::size_t i) {
         Item& item = items[i];
         const ShapeOptions& options = item.options;
         if (item.analytic) {

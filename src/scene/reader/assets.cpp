@@ -1,13 +1,13 @@
 #include "scene/reader/assets.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <functional>
 
+#include "base/parallel.h"
 #include "scene/reader/files.h"
 
 namespace keyhole {
@@ -86,12 +86,7 @@ void Assets::load() {
     // The largest first, and each thread takes the next: no thread is left alone with a large one at the end.
     std::stable_sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) { return a.size > b.size; });
     std::atomic<std::size_t> next = 0;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, jobs.size(), 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) jobs[next++].run();
-        },
-        tbb::simple_partitioner());
+    parallel_for(jobs.size(), [&](std::size_t) { jobs[next++].run(); });
 }
 
 void Assets::Asset::load() {
