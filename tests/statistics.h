@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/vec.h"
+
 #include "incomplete_gamma.h"
 
 namespace keyhole {
@@ -38,6 +40,20 @@ inline double chi_square_p_value(const std::vector<double>& expected, const std:
     if (cells < 2) return pool_p;
     const double p = chi_square_tail(statistic, cells - 1);
     return small_pool ? std::min(1.0, 2 * std::min(p, pool_p)) : p;
+}
+
+// P(|T| > |t|) of Student's distribution with a whole number of degrees of freedom, by its finite series [Abramowitz and
+// Stegun 26.7.3 and 26.7.4].
+inline double student_two_sided_tail(double t, int degrees) {
+    const double angle = std::atan(std::abs(t) / std::sqrt(degrees)), c = std::cos(angle), s = std::sin(angle);
+    const bool odd = degrees % 2 == 1;
+    double term = odd ? c : 1, sum = degrees == 1 ? 0 : term;
+    for (int i = odd ? 3 : 2; i <= degrees - 2; i += 2) {
+        term *= c * c * (i - 1) / i;
+        sum += term;
+    }
+    const double inside = odd ? (angle + s * sum) * 2 / pi : s * sum;
+    return std::max(0.0, 1 - inside);
 }
 
 }  // namespace keyhole

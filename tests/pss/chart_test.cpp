@@ -68,8 +68,8 @@ TEST_P(Charts, ContributionAndWeightsDoNotDependOnTheTechnique) {
 INSTANTIATE_TEST_SUITE_P(OwnScenes, Charts,
                          testing::Values("cornell-box", "keyhole-room", "box-in-the-sun", "glossy-room", "glass-caustic",
                                          "charted-toy", "veil", "gallery", "stage", "three-planes", "tree-reflector"),
-                         [](const auto& info) {
-                             std::string name = info.param;
+                         [](const auto& test) {
+                             std::string name = test.param;
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });

@@ -56,9 +56,9 @@ TEST_P(Renders, BIsTheMeanOfTheImage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Renders, testing::Values(Integrator::path, Integrator::bdpt, Integrator::mmlt),
-                         [](const auto& info) {
-                             return info.param == Integrator::path   ? "path"
-                                    : info.param == Integrator::bdpt ? "bdpt"
+                         [](const auto& test) {
+                             return test.param == Integrator::path   ? "path"
+                                    : test.param == Integrator::bdpt ? "bdpt"
                                                                      : "mmlt";
                          });
 

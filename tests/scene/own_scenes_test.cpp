@@ -54,8 +54,8 @@ TEST_P(OwnScene, HasTheScaleOfARoom) {
     EXPECT_LT(radius, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, OwnScene, testing::ValuesIn(own_scenes()), [](const auto& info) {
-    std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(All, OwnScene, testing::ValuesIn(own_scenes()), [](const auto& test) {
+    std::string name = test.param;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
 });

@@ -216,7 +216,7 @@ TEST_P(Shapes, SamplesAreUniformInArea) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Shapes, testing::ValuesIn(shape_cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& test) { return test.param.name; });
 
 // A mesh whose vertices are not shared has known areas per triangle.
 TEST(MeshShapes, TrianglesAreChosenByArea) {

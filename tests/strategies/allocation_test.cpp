@@ -13,6 +13,9 @@ namespace {
 std::atomic<std::uint64_t> allocations{0};
 }
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // g++ does not see that both operators are replaced
+#endif
 void* operator new(std::size_t size) {
     ++allocations;
     if (void* p = std::malloc(size)) return p;
