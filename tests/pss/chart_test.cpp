@@ -43,14 +43,21 @@ double path_density(const PathDensities& d, int t) {
     return p;
 }
 
-class Charts : public testing::TestWithParam<const char*> {};
+struct Case {
+    const char* scene;
+    std::map<std::string, std::string> defines;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }
+
+class Charts : public testing::TestWithParam<Case> {};
 
 // Weights by the recurrence equal p_t / sum p_t' from whole products of densities (short paths: no overflow), and
 // C = f / sum p_t' whichever technique sampled the path. The tolerance covers the rounding of about 60 factors and of
-// directions that are normalised again from positions; narrow lobes amplify the latter by their inverse width.
+// directions that are normalised again from positions. Far in the tail of a narrow lobe the exponent amplifies those
+// without bound; such contributions are 1e-20 of the others and below, and are compared absolutely.
 TEST_P(Charts, ContributionAndWeightsDoNotDependOnTheTechnique) {
-    const auto scene = own_scene(GetParam());
-    const double tolerance = 1e-6;
+    const auto scene = own_scene(GetParam().scene, 16, 16, GetParam().defines);
+    const double tolerance = 1e-6, negligible = 1e-18;
     const int found = for_sampled_paths(*scene, 60000, [&](const PrimarySample& u, const Path& path,
                                                            const PathDensities& d, const Evaluation& e) {
         double sum = 0;
@@ -59,17 +66,26 @@ TEST_P(Charts, ContributionAndWeightsDoNotDependOnTheTechnique) {
         ASSERT_TRUE(technique_exists(path, u.t));
         const Spectrum expected = contribution(*scene, path) / sum;
         for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(e.contribution[c], expected[c], tolerance * e.contribution.maxCoeff())
+            ASSERT_NEAR(e.contribution[c], expected[c], tolerance * e.contribution.maxCoeff() + negligible)
                 << "k = " << u.k << ", t = " << u.t;
     });
-    EXPECT_GT(found, 200);
+    EXPECT_GT(found, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(OwnScenes, Charts,
-                         testing::Values("cornell-box", "keyhole-room", "box-in-the-sun", "glossy-room", "glass-caustic",
-                                         "charted-toy", "veil", "gallery", "stage", "three-planes", "tree-reflector"),
+                         testing::ValuesIn(std::vector<Case>{{"cornell-box", {}},
+                                                             {"keyhole-room", {{"hole", "0.4"}}},
+                                                             {"box-in-the-sun", {{"hole", "0.3"}}},
+                                                             {"glossy-room", {}},
+                                                             {"glass-caustic", {}},
+                                                             {"charted-toy", {{"hole", "0.1"}}},
+                                                             {"veil", {}},
+                                                             {"gallery", {}},
+                                                             {"stage", {}},
+                                                             {"three-planes", {{"hole", "0.3"}}},
+                                                             {"tree-reflector", {}}}),
                          [](const auto& test) {
-                             std::string name = test.param;
+                             std::string name = test.param.scene;
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });

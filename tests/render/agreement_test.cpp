@@ -16,6 +16,8 @@ struct Case {
     bool path_finds_all = true;  // false: some light comes only from emitters without extent through delta lobes
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }
+
 const Case cases[] = {
     {"cornell-box", {}},
     {"three-planes", {{"hole", "0.1"}}},

@@ -131,6 +131,8 @@ double MeshShape::fill(const Ray& ray, const ShapeHit& hit, SurfacePoint& x) con
     // A ray in the plane has no distance to it, and one along it may start behind it by the query's error.
     if (!(t > ray.tnear && t < ray.tfar)) t = hit.t;
     x.p = ray.o + t * ray.d;
+    // Its rounding error grows with the ray's coordinates; the bound below only with the plane's, so back to the plane.
+    x.p += (c - n.dot(x.p)) * n;
     x.ng = n;
     if (!hit.instance) [[likely]] {
         const Plane& plane = planes_[hit.primitive];

@@ -1,0 +1,57 @@
+// Rays that leave a plane do not hit it again, however near to zero its coordinate is: there the error of a point that
+// was computed along a ray is not small beside the coordinates.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/rng.h"
+#include "base/warp.h"
+#include "scene/scene_builder.h"
+
+namespace keyhole {
+namespace {
+
+struct Case {
+    std::string name;
+    Affine to_world;
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    const auto add = [&](const std::string& name, const Vec3& translation, double angle, const Vec3& axis) {
+        all.push_back({name, Affine(Eigen::Translation3d(translation) * Eigen::AngleAxisd(angle, axis))});
+    };
+    // Sines and cosines of quarter turns are off by 1e-16, and so are the corners.
+    add("floor", {0, 0, 0}, -pi / 2, Vec3::UnitX());
+    add("wall", {0, 0.3, 0}, pi / 2, Vec3::UnitY());
+    add("skew", {0, 0, 0}, 0.7, Vec3(1, -2, 0.5).normalized());
+    for (const double z : {0.0, 1e-30, 1e-17, 1e-15, 1e-12, 1e-8, 1e-3, 1.0, 1e3})
+        add("z_" + std::to_string(z > 0 ? -static_cast<int>(std::log10(z)) : 99), {0, 0, z}, 0, Vec3::UnitZ());
+    return all;
+}
+
+TEST(PlanesNearZero, AreNotHitByRaysThatLeaveThem) {
+    Rng rng(3);
+    for (const Case& plane : cases()) {
+        SceneBuilder builder;
+        ShapeOptions options;
+        options.to_world = plane.to_world;
+        builder.add_rectangle(options);
+        builder.set_sensor(make_perspective_sensor({}), {});
+        const auto scene = builder.build();
+        int again = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3 target = plane.to_world * Vec3(1.9 * rng.uniform() - 0.95, 1.9 * rng.uniform() - 0.95, 0);
+            const Vec3 w = square_to_sphere({rng.uniform(), rng.uniform()});
+            const auto x = scene->intersect(Ray{target + 3 * w, -w});
+            if (!x) continue;  // all but along the plane
+            const Vec3 out = square_to_sphere({rng.uniform(), rng.uniform()});
+            again += scene->intersect(Scene::ray_from(*x, out)).has_value();
+            again += !scene->unoccluded(Scene::offset_origin(*x, out), target + 3 * out);
+        }
+        EXPECT_EQ(again, 0) << plane.name;
+    }
+}
+
+}  // namespace
+}  // namespace keyhole
