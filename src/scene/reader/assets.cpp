@@ -77,7 +77,8 @@ void Assets::load() {
         std::function<void()> run;
     };
     std::vector<Job> jobs;
-    for (auto& [key, asset] : assets_) {
+    for (auto& entry : assets_) {
+        Asset& asset = entry.second;
         const bool is_mesh = !asset.mesh_request.filename.empty();
         const std::string& filename = is_mesh ? asset.mesh_request.filename : asset.bitmap_request.filename;
         jobs.push_back({file_size(filename), [&asset] { asset.load(); }});
