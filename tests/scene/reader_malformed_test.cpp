@@ -133,6 +133,24 @@ std::vector<Malformed> documents() {
          "file 'nowhere.xml' not found (looked in "},
         {"IncludeCycle", scene_with("<include filename=\"loop.xml\"/>"), "loop.xml:1:24: include cycle: "},
         {"IncludeBroken", scene_with("<include filename=\"broken.xml\"/>"), "broken.xml:2:23: XML syntax error"},
+        {"VariablesThatDouble",
+         [] {
+             std::string text = "<scene version=\"3.0.0\"><default name=\"v0\" value=\"xxxxxxxx\"/>";
+             for (int i = 1; i < 40; ++i)
+                 text += "<default name=\"v" + std::to_string(i) + "\" value=\"$v" + std::to_string(i - 1) + "$v" +
+                         std::to_string(i - 1) + "\"/>";
+             return text + "</scene>";
+         }(),
+         "grows beyond 1048576 characters"},
+        {"ChainTooLong",
+         [] {
+             std::string body;
+             for (int i = 0; i < 100; ++i)
+                 body += "<bsdf type=\"twosided\" id=\"b" + std::to_string(i) + "\"><ref id=\"b" +
+                         std::to_string(i + 1) + "\"/></bsdf>";
+             return scene_with(body + "<bsdf type=\"diffuse\" id=\"b100\"/>");
+         }(),
+         "bsdfs are nested deeper than 64"},
         {"NestedTooDeep",
          [] {
              std::string text = "<scene version=\"3.0.0\">";

@@ -54,9 +54,7 @@ std::uint64_t hash_of_file(const std::string& path) {
 
 void Assets::add_file(const std::string& filename) {
     const std::string path = canonical_path(filename);
-    for (const File& file : files_)
-        if (file.path == path) return;
-    files_.push_back({path, file_size(path), 0});
+    if (paths_.insert(path).second) files_.push_back({path, file_size(path), 0});
 }
 
 void Assets::request(const MeshRequest& request) {

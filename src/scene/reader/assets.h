@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,7 @@ class Assets {
 
     std::map<std::string, Asset> assets_;  // by request
     std::vector<File> files_;
+    std::set<std::string> paths_;  // of files_
 };
 
 }  // namespace keyhole

@@ -9,6 +9,8 @@
 namespace keyhole {
 namespace {
 
+constexpr std::size_t max_nesting = 64;
+
 std::string label(const Element& element) {
     const std::string* id = element.attribute("id");
     return "'" + (id ? *id : element.required_attribute("type")) + "'";
@@ -23,6 +25,8 @@ BsdfPtr Context::bsdf(const Element& element) {
         for (auto i = again; i != open_.end(); ++i) chain += label(**i) + " -> ";
         throw InputError(element.where, "bsdf " + label(element) + " refers to itself: " + chain + label(element));
     }
+    if (open_.size() == max_nesting)
+        throw InputError(element.where, "bsdfs are nested deeper than " + std::to_string(max_nesting));
     open_.push_back(&element);
     Properties p(element, document, notes);
     BsdfPtr made = find_plugin(bsdf_plugins(), element)(p, *this);

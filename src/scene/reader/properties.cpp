@@ -33,16 +33,18 @@ Properties::Properties(const Element& plugin, const Document& document, Notes& n
     for (const Element& element : plugin.children) {
         Child child{&element, &element, {}};
         if (const std::string* name = element.attribute("name")) child.name = canonical_parameter(*name);
-        for (const Child& other : children_)
-            if (!child.name.empty() && other.name == child.name)
-                throw InputError(element.where, "parameter '" + child.name + "' of " + title() +
-                                                    " is given twice; first at " + place_text(other.given->where));
+        if (!child.name.empty()) check_first(child);
         if (element.tag == "ref") {
             child.target = &resolve(element, document);
             notes_.referenced.insert(child.target);
         }
         children_.push_back(std::move(child));
     }
+}
+
+void Properties::check_first(const Child& child) const {
+    for (const Child& other : children_)
+        if (other.name == child.name) fail(child, "is given twice; first at " + place_text(other.given->where));
 }
 
 std::string Properties::title() const {

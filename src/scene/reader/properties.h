@@ -86,6 +86,7 @@ class Properties {
     [[noreturn]] void fail(const Child& child, const std::string& message) const;
 
   private:
+    void check_first(const Child& child) const;
     const std::string& value(const Child& child, const std::vector<std::string>& tags);
 
     const Element& plugin_;

@@ -7,6 +7,8 @@
 namespace keyhole {
 namespace {
 
+constexpr std::size_t max_length = 1 << 20;  // variables that double one another would fill the memory
+
 template <class Map>
 std::vector<std::string> keys(const Map& map) {
     std::vector<std::string> names;
@@ -40,6 +42,9 @@ std::string Variables::substitute(const std::string& text, const SourceLocation&
             throw InputError(where, "unresolved variable '$" + name + "'; " + valid_names(name, keys(values_)));
         used_.insert(name);
         out += value->second;
+        if (out.size() > max_length)
+            throw InputError(where,
+                             "the variable '$" + name + "' grows beyond " + std::to_string(max_length) + " characters");
         i = end;
     }
     return out;
