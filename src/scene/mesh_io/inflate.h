@@ -18,6 +18,8 @@ class InflateReader {
     InflateReader& operator=(const InflateReader&) = delete;
 
     void read(void* out, std::size_t bytes);
+    // Reads what is left and checks the stream's checksum.
+    void finish();
     template <class T>
     T read() {
         T value;
@@ -27,10 +29,12 @@ class InflateReader {
 
   private:
     void feed();
+    bool inflate_some(void* out, std::size_t bytes, std::size_t& got);  // false at the end of the stream
 
     const std::string& filename_;
     std::string_view left_;  // not yet given to zlib
     z_stream stream_{};
+    bool ended_ = false;
 };
 
 }  // namespace keyhole

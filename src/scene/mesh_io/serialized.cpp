@@ -119,6 +119,7 @@ std::shared_ptr<Mesh> read_serialized(const std::string& filename, int shape_ind
         read_attributes<float>(in, flags, vertices, *mesh);
     }
     read_rows<std::uint32_t, 3>(in, triangles, mesh->triangles);
+    in.finish();
     reserve_positions(*mesh, mesh->positions.size());
     check_read_mesh(*mesh, filename);
     return mesh;
