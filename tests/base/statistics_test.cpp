@@ -3,24 +3,23 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/rng.h"
+#include "base/vec.h"
 
 namespace keyhole {
 namespace {
 
-TEST(IncompleteGamma, AgreesWithKnownValues) {
-    // Closed forms: Q(1/2, x) = erfc(sqrt(x)), Q(1, x) = exp(-x), Q(3, x) = exp(-x) (1 + x + x^2 / 2).
-    for (const double x : {1e-6, 0.1, 0.9, 1.4, 1.6, 3.9, 4.1, 10.0, 60.0, 300.0}) {
-        EXPECT_NEAR(IncompleteGamma(0.5, x).q / std::erfc(std::sqrt(x)), 1, 1e-12) << x;
-        EXPECT_NEAR(IncompleteGamma(1, x).q / std::exp(-x), 1, 1e-12) << x;
-        EXPECT_NEAR(IncompleteGamma(3, x).q / (std::exp(-x) * (1 + x + x * x / 2)), 1, 1e-12) << x;
-        const IncompleteGamma g(31.5, x);
-        EXPECT_NEAR(g.p + g.q, 1, 1e-15) << x;
+TEST(Tails, AgreeWithClosedForms) {
+    for (const double x : {1e-6, 0.1, 0.9, 3.9, 60.0, 300.0}) {
+        EXPECT_NEAR(chi_square_tail(2 * x, 2) / std::exp(-x), 1, 1e-12) << x;
+        EXPECT_NEAR(chi_square_tail(2 * x, 1) / std::erfc(std::sqrt(x)), 1, 1e-12) << x;
+        EXPECT_NEAR(student_two_sided_tail(x, 1), 1 - 2 / pi * std::atan(x), 1e-12) << x;
     }
-    EXPECT_EQ(IncompleteGamma(2, 0).p, 0);
-    EXPECT_EQ(IncompleteGamma(2, 0).q, 1);
-    EXPECT_NEAR(IncompleteGamma(31.5, 50).q, 0.0020772365527847955, 1e-15);
-    EXPECT_NEAR(IncompleteGamma(500, 450).p, 0.010717238091289742, 1e-13);
+    EXPECT_EQ(chi_square_tail(0, 3), 1);
+    EXPECT_NEAR(normal_two_sided_quantile(0.05), 1.959963984540054, 1e-12);
 }
 
 TEST(ChiSquare, IsUniformUnderItsNullHypothesis) {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "chain/running_mean.h"
-#include "incomplete_gamma.h"
 #include "interval_target.h"
 #include "statistics.h"
 

@@ -5,7 +5,6 @@
 
 #include <limits>
 
-#include "incomplete_gamma.h"
 #include "statistics.h"
 #include "targets.h"
 

@@ -66,7 +66,7 @@ inline double welch_p_value(const Replicates& a, const Replicates& b, std::size_
     if (!(va + vb > 0)) return 0;
     const double t = difference / std::sqrt(va + vb);
     const double degrees = (va + vb) * (va + vb) / (va * va / (a.n - 1) + vb * vb / (b.n - 1));
-    return student_two_sided_tail(t, std::max(1, static_cast<int>(degrees)));  // rounded down: on the safe side
+    return student_two_sided_tail(t, std::max(1.0, degrees));
 }
 
 struct Agreement {

@@ -1,6 +1,5 @@
 #include "emitter_checks.h"
 
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "base/frame.h"
@@ -146,7 +145,7 @@ testing::AssertionResult power_is_the_integral(const Emitter& emitter) {
     }
     const double mean = sum / samples, expected = luminance(emitter.power());
     const double error = std::sqrt(std::max(0.0, squares / samples - mean * mean) / samples);
-    const double quantile = boost::math::quantile(boost::math::normal(), 1 - sidak_level(1e-3, calls) / 2);
+    const double quantile = normal_two_sided_quantile(sidak_level(1e-3, calls));
     // Estimates without variance agree up to rounding.
     if (std::abs(mean - expected) <= quantile * error + 1e-9 * expected) return testing::AssertionSuccess();
     return testing::AssertionFailure() << "power " << expected << ", estimated " << mean << " +- " << error;
