@@ -101,8 +101,11 @@ void MeshShape::make_planes() {
         const Vec3 cross = f.cross();
         const double length = cross.norm();
         const Vec3 n = cross / length, weight = f.error_weight(length);
+        // fill() puts points back onto the plane but for 2^-53 of the way, itself 2^-51 of the ray's coordinates: beside
+        // a plane coordinate next to zero that is not small. Good for coordinates up to 2^14 times the triangle's.
+        const double put_back = 0x1p-90 * (f.v0.cwiseAbs() + f.extent()).sum();
         planes_.push_back(
-            {n, n.dot(f.v0), (16 * weight).cast<float>(), static_cast<float>(8 * weight.dot(f.extent()))});
+            {n, n.dot(f.v0), (16 * weight).cast<float>(), static_cast<float>(8 * weight.dot(f.extent()) + put_back)});
     }
 }
 
