@@ -73,7 +73,7 @@ TEST(Instances, OfAGroupEqualBakedShapes) {
     EXPECT_EQ(a->statistics().unique_triangles, 128U + 12U);
 }
 
-TEST(Instances, DISABLED_OfAnalyticShapesEqualBakedOnes) {
+TEST(Instances, OfAnalyticShapesEqualBakedOnes) {
     const Affine m = similarity(1.3, 2, {4, -1, 2});
     SceneBuilder instanced, baked;
     instanced.begin_group("round");
