@@ -28,8 +28,8 @@ void expect_same_surfaces(const Scene& a, const Scene& b, double tolerance, doub
     Rng rng(1, 1);
     int hits = 0, differ = 0;
     for (int i = 0; i < 20000; ++i) {
-        const Vec3 o = a.center() + 2 * a.radius() * uniform_direction(rng);
-        const Vec3 d = (a.center() + 0.7 * a.radius() * uniform_direction(rng) - o).normalized();
+        const Vec3 o = b.center() + 2 * b.radius() * uniform_direction(rng);
+        const Vec3 d = (b.center() + 0.7 * b.radius() * uniform_direction(rng) - o).normalized();
         SurfacePoint x, y;
         const bool hit = a.intersect({o, d}, x);
         if (hit != b.intersect({o, d}, y)) {
