@@ -14,16 +14,16 @@ export function number_text(value: number | null | undefined, digits = 3): strin
     const magnitude = Math.abs(value);
     if (magnitude === 0) return "0";
     if (magnitude >= 1e-3 && magnitude < 99999.5) {
-        if (Number.isInteger(value) || magnitude >= 10 ** (digits - 1)) return Math.round(value).toLocaleString("en");
-        return value.toPrecision(digits);
+        if (Number.isInteger(value) || magnitude >= 10 ** (digits - 1)) return Math.round(value).toLocaleString("en").replace("-", "−");
+        return value.toPrecision(digits).replace("-", "−");
     }
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
     return `${mantissa!.replace("-", "−")}×${power_of_ten(Number(exponent))}`;
 }
 
-export function interval_text(estimate: Estimate | undefined): string {
+export function interval_text(estimate: Estimate | undefined, digits = 3): string {
     if (!is_number(estimate?.low) || !is_number(estimate.high)) return "";
-    return `[${number_text(estimate.low)}, ${number_text(estimate.high)}]`;
+    return `[${number_text(estimate.low, digits)}, ${number_text(estimate.high, digits)}]`;
 }
 
 export function estimate_text(estimate: Estimate | undefined): string {

@@ -45,7 +45,8 @@ function labelled_ticks(scale: Scale, log: boolean, room: number): number[] {
 
 const tick_text = (tick: number): string => {
     const exponent = Math.log10(Math.abs(tick));
-    return Number.isInteger(exponent) && Math.abs(exponent) > 2 ? power_of_ten(exponent) : number_text(tick, 2);
+    return Number.isInteger(exponent) && Math.abs(exponent) > 2 ? power_of_ten(exponent)
+        : String(Number(tick.toPrecision(3))).replace("-", "−");
 };
 
 // A shape for each series, so that they differ not by colour alone.

@@ -7,7 +7,7 @@ export const metric_names: Record<string, string> = {
     mse: "MSE", rmse: "RMSE", rrmse: "rRMSE", relmse: "relMSE", relmse_trimmed: "relMSE, trimmed", mape: "MAPE",
     smape: "SMAPE", mean_ratio: "Mean ratio"};
 
-type Column = [name: string, of: (entry: Entry) => Estimate | undefined, better: "low" | "high" | "none"];
+type Column = [name: string, of: (entry: Entry) => Estimate | undefined, better: "low" | "high" | "none", digits?: number];
 
 function head(...names: string[]): HTMLElement {
     return html("thead", {}, html("tr", {}, ...names.map((name) => html("th", {scope: "col"}, name))));
@@ -15,10 +15,10 @@ function head(...names: string[]): HTMLElement {
 
 const words = (key: string): string => key.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
 
-function estimate_cell(estimate: Estimate | undefined, best: boolean): HTMLElement {
-    const mean = number_text(estimate?.mean);
+function estimate_cell(estimate: Estimate | undefined, best: boolean, digits = 3): HTMLElement {
+    const mean = number_text(estimate?.mean, digits);
     return html("td", {}, best ? html("strong", {title: "best mean"}, mean) : mean,
-                html("small", {}, interval_text(estimate)));
+                html("small", {}, interval_text(estimate, digits)));
 }
 
 function best_entry(entries: Entry[], [, of, better]: Column): Entry | undefined {
@@ -33,7 +33,8 @@ export function metrics_section({entries = []}: Results): HTMLElement | null {
     const keys = [...Object.keys(metric_names).filter((key) => found.has(key)), ...[...found].filter((key) => !(key in metric_names))];
     const columns: Column[] = [
         ["Speed-up", (e) => e.speed_up, "high"],
-        ...keys.map((key): Column => [metric_names[key] ?? words(key), (e) => e.metrics?.[key], key === "mean_ratio" ? "none" : "low"]),
+        ...keys.map((key): Column => [metric_names[key] ?? words(key), (e) => e.metrics?.[key],
+                                ...(key === "mean_ratio" ? ["none", 5] as const : ["low"] as const)]),
         ["Variance", (e) => e.split?.variance, "low"],
         ["Squared bias", (e) => e.split?.squared_bias, "none"],
         ["Mutations/s", (e) => e.mutations_per_second, "none"],
@@ -43,7 +44,7 @@ export function metrics_section({entries = []}: Results): HTMLElement | null {
     const best = shown.map((column) => best_entry(entries, column));
     const rows = entries.map((entry) => html("tr", {}, html("th", {scope: "row"}, entry.name, is_number(entry.runs) &&
         html("small", {}, `${entry.runs} run${entry.runs === 1 ? "" : "s"}`)),
-        ...shown.map(([, of], i) => estimate_cell(of(entry), best[i] === entry))));
+        ...shown.map(([, of, , digits], i) => estimate_cell(of(entry), best[i] === entry, digits))));
     return section("errors", "Errors", html("p", {class: "note"},
         "Mean over runs, below it the 95% interval. Bold is the best mean, which a neighbour with an overlapping interval " +
         "may share. The speed-up is over the first entry, at equal error. Variance and squared bias are relative to the " +

@@ -62,7 +62,8 @@ export class Viewer {
         this.redraw();
     }
 
-    private pixels(index: number): Pixels | undefined {
+    // Decoded now or, with another redraw, later.
+    pixels(index: number): Pixels | undefined {
         const pixels = this.images.get(index);
         if (!pixels)
             this.images.load(index).then(() => this.redraw(), (error: Error) => this.failed(error.message));
@@ -101,14 +102,14 @@ export class Viewer {
         return canvas;
     }
 
+    // Keeps what is on the canvas while an image is being decoded.
     private draw(): void {
         const context = this.canvas.getContext("2d")!, {width, height} = this.canvas, {view, state} = this;
+        const layers = this.seen().map((index) => this.layer(index));
+        if (layers.includes(undefined)) return;
         const ratio = devicePixelRatio, zoom = view.zoom * ratio, edge = Math.round(state.divider * width);
-        context.setTransform(1, 0, 0, 1, 0, 0);
         context.clearRect(0, 0, width, height);
-        const draw = (index: number, left: number, right: number): void => {
-            const layer = this.layer(index);
-            if (!layer) return;
+        const draw = (layer: HTMLCanvasElement, left: number, right: number): void => {
             context.save();
             context.beginPath();
             context.rect(left, 0, right - left, height);
@@ -119,9 +120,9 @@ export class Viewer {
             context.drawImage(layer, 0, 0);
             context.restore();
         };
-        if (!state.split) return draw(state.shown, 0, width);
-        draw(state.shown, 0, edge);
-        draw(state.other, edge, width);
+        if (!state.split) return draw(layers[0]!, 0, width);
+        draw(layers[0]!, 0, edge);
+        draw(layers[1]!, edge, width);
         context.fillStyle = "#000";
         context.fillRect(edge - 1.5 * ratio, 0, 3 * ratio, height);
         context.fillStyle = "#fff";

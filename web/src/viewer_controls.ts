@@ -70,7 +70,7 @@ export function viewer_section(data: PageData): HTMLElement | null {
     const readout = html("pre", {class: "readout", id: "readout", "aria-label": "Pixel values"});
 
     function value_line(index: number): string {
-        const pixels = viewer.images.get(index), [x, y] = state.pixel!;
+        const pixels = viewer.pixels(index), [x, y] = state.pixel!;
         if (!pixels) return "";
         const values = [0, 1, 2].map((channel) => number_text(pixels.value(channel, y * pixels.width + x), 4).padStart(11));
         return `${images[index]!.name.slice(0, 24).padEnd(24)}${values.join("")}`;
@@ -97,8 +97,8 @@ export function viewer_section(data: PageData): HTMLElement | null {
         canvas.style.touchAction = view.fitted && !state.split ? "pan-y" : "none";
         canvas.setAttribute("aria-label", `${is_image ? "Rendered image" : error_metrics[state.mode]!.name} of ${seen}` +
             (state.split ? `, split with ${images[state.other]!.name}` : ""));
-        Object.assign(canvas.dataset, {shown: seen, mode: state.mode, zoom: view.zoom.toFixed(4), x: view.x.toFixed(2),
-                                       y: view.y.toFixed(2), split: state.split ? state.divider.toFixed(3) : "off",
+        Object.assign(canvas.dataset, {shown: seen, mode: state.mode, zoom: view.zoom.toFixed(4), x: view.x.toFixed(4),
+                                       y: view.y.toFixed(4), split: state.split ? state.divider.toFixed(3) : "off",
                                        ready: String(viewer.seen().every((i) => viewer.images.get(i)))});
         const indices = [...new Set([...viewer.seen(), ...(reference < 0 ? [] : [reference])])];
         readout.textContent = state.pixel
