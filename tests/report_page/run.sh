@@ -23,5 +23,7 @@ CHROMIUM=$(command -v chromium || command -v chromium-browser || command -v goog
     skip "Chromium is not installed; the template was checked, the page was not opened"
 mkdir -p "$folder"
 "$sample" "$folder/small.html" 96 54 3
+"$sample" "$folder/sweep.html" 96 54 6 sweep
+"$sample" "$folder/bare.html" 96 54 1 bare
 "$sample" "$folder/large.html" 1280 720 12
 CHROMIUM=$CHROMIUM PAGES=$folder node --test test/

@@ -1,9 +1,12 @@
 // Writes a report with made-up results and images of known noise, for the test of the page in a browser.
 //
-//   sample_report FILE WIDTH HEIGHT ENTRIES
+//   sample_report FILE WIDTH HEIGHT ENTRIES [sweep|bare]
+//
+// `sweep`: the entries are values of a parameter. `bare`: the results hold only what they must, and there is no image.
 //
 // The reference is a smooth pattern R; entry i (from 0) is R times a uniform number in 1 +- 0.4 / (i + 1). Pixel (0, 0)
 // is 100000 i in every channel, beyond what a half can hold, and (1, 0) of entry 0 is not a number.
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
@@ -11,6 +14,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "compare/report.h"
 
@@ -137,16 +143,37 @@ json results(int width, int height, int entries) {
     return all;
 }
 
+void make_sweep(json& all) {
+    double value = 0.001;
+    for (json& entry : all["entries"]) {
+        entry["parameter"] = {{"name", "small-step.sigma"}, {"value", value}};
+        value *= 3;
+    }
+}
+
+void make_bare(json& all) {
+    all = {{"format", all["format"]},
+           {"version", all["version"]},
+           {"scene", {{"file", "scenes/sample.xml"}}},
+           {"entries", {{{"name", "mmlt"}}}}};
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
     try {
-        if (count != 5) throw std::invalid_argument("usage: sample_report FILE WIDTH HEIGHT ENTRIES");
+        if (count < 5) throw std::invalid_argument("usage: sample_report FILE WIDTH HEIGHT ENTRIES [sweep|bare]");
         const int width = std::atoi(arguments[2]), height = std::atoi(arguments[3]), entries = std::atoi(arguments[4]);
-        const json all = results(width, height, entries);
+        const std::string kind = count > 5 ? arguments[5] : "";
+        json all = results(width, height, entries);
         std::vector<keyhole::ReportImage> images = {{"reference", reference_image(width, height)}};
         for (int i = 0; i < entries; ++i)
             images.push_back({all["entries"][static_cast<std::size_t>(i)]["name"], noisy_image(images[0].image, i)});
+        if (kind == "sweep") make_sweep(all);
+        if (kind == "bare") {
+            make_bare(all);
+            images.clear();
+        }
         keyhole::write_report(arguments[1], all, images);
     } catch (const std::exception& error) {
         std::cerr << error.what() << '\n';

@@ -1,9 +1,12 @@
 // The page in a real browser, opened from its file. Needs CHROMIUM (the program) and PAGES (the folder with the pages of
-// sample_report: small.html 96x54 with 3 entries, large.html 1280x720 with 12). Leaves screenshots in PAGES.
+// sample_report: small.html 96x54 with 3 entries, sweep.html with 6, bare.html with the
+// least that there can be, large.html 1280x720 with 12). Leaves screenshots in PAGES.
 import assert from "node:assert/strict";
 import {after, before, test} from "node:test";
 import {pathToFileURL} from "node:url";
 import {join} from "node:path";
+import {readFileSync} from "node:fs";
+import Ajv from "ajv/dist/2020.js";
 import {chromium} from "playwright-core";
 
 const folder = process.env.PAGES;
@@ -28,7 +31,7 @@ async function on_page(name, options, body) {
     page.on("request", (request) => /^(file|data):/.test(request.url()) || wrong.push(`asked for ${request.url()}`));
     try {
         await page.goto(pathToFileURL(join(folder, name)).href);
-        await page.locator("#viewer[data-ready=true]").waitFor();
+        if (name !== "bare.html") await page.locator("#viewer[data-ready=true]").waitFor();
         await body(page);
         assert.deepEqual(wrong, []);
     } finally {
@@ -197,6 +200,31 @@ test("everything can be reached and has a name", () => on_page("small.html", {},
     }
     for (const name of ["viewer", "INPUTshown", "SELECT", "SUMMARY"]) assert.ok(seen.has(name) || [...seen].some((s) => s.startsWith(name)), name);
 }));
+
+test("a sweep is drawn against its parameter", () => on_page("sweep.html", {}, async (page) => {
+    const drawing = page.locator("#sweep-plot .plot svg");
+    assert.equal(await drawing.getAttribute("aria-label").then((label) => label.split(" of ")[0]), "relMSE against small-step.sigma");
+    assert.equal(await drawing.locator(".marker").count(), 6);
+    await page.locator("#sweep-plot select").selectOption("speed_up");
+    assert.equal(await drawing.locator(".marker").count(), 5);  // the first entry has none
+    await page.screenshot({path: join(folder, "sweep.png"), fullPage: true});
+}));
+
+test("what is unknown is left out", () => on_page("bare.html", {}, async (page) => {
+    assert.equal(await page.locator("h1").textContent(), "scenes/sample.xml");
+    assert.deepEqual(await page.locator("h2").allTextContents(), ["How to repeat it"]);
+}));
+
+test("the results of all samples follow docs/results.schema.json", () => {
+    const schema = JSON.parse(readFileSync(new URL("../../docs/results.schema.json", import.meta.url), "utf8"));
+    const validate = new Ajv({allErrors: true, allowUnionTypes: true}).compile(schema);
+    for (const name of ["small", "sweep", "bare"]) {
+        const data = /id="data">(.*?)<\/script>/s.exec(readFileSync(join(folder, `${name}.html`), "utf8"))[1];
+        const {results} = JSON.parse(data);
+        assert.ok(validate(results), JSON.stringify(validate.errors, null, 1));
+        assert.ok(!validate({...results, entries: [{}]}), "an entry without a name is refused");
+    }
+});
 
 test("12 entries at 1280x720 open in under 2 s", () => on_page("large.html", {}, async (page) => {
     const opened = await page.evaluate(async () => performance.now());
