@@ -24,15 +24,18 @@ async function bundle(entry) {
     return {text: result.outputFiles[0].text.trim(), inputs: Object.keys(result.metafile.inputs)};
 }
 
-// The licence files of the packages from which an input was bundled.
+// The licences of the packages from which an input was bundled; what packages have in common is there once.
 function licences(inputs) {
     const packages = new Set(inputs.map((file) => /^node_modules\/((?:@[^/]+\/)?[^/]+)\//.exec(file)?.[1]).filter(Boolean));
-    return [...packages].sort().map((name) => {
-        const file = join(root, "node_modules", name, "LICENSE");
-        if (!existsSync(file)) throw new Error(`${name} has no LICENSE to keep`);
-        const {version} = JSON.parse(readFileSync(join(root, "node_modules", name, "package.json"), "utf8"));
-        return `${name} ${version}\n\n${readFileSync(file, "utf8").trim()}`;
-    });
+    const names_of_text = new Map();
+    for (const name of [...packages].sort()) {
+        const folder = join(root, "node_modules", name);
+        if (!existsSync(join(folder, "LICENSE"))) throw new Error(`${name} has no LICENSE to keep`);
+        const text = readFileSync(join(folder, "LICENSE"), "utf8").trim();
+        const {version} = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+        names_of_text.set(text, [...(names_of_text.get(text) ?? []), `${name} ${version}`]);
+    }
+    return [...names_of_text].map(([text, names]) => `${names.join(", ")}\n\n${text}`);
 }
 
 const escape = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");

@@ -8,6 +8,9 @@ export class View {
 
     constructor(readonly image_width: number, readonly image_height: number, public width = 1, public height = 1) {}
 
+    // Small images are enlarged to fit, and can be seen in their own size all the same.
+    least_zoom(): number { return Math.min(this.fit_zoom(), 1); }
+
     fit_zoom(): number { return Math.min(this.width / this.image_width, this.height / this.image_height); }
 
     fit(): void {
@@ -30,9 +33,9 @@ export class View {
 
     // The point (cx, cy) of the canvas keeps its place.
     zoom_by(factor: number, cx = this.width / 2, cy = this.height / 2): void {
-        const [ix, iy] = this.to_image(cx, cy), least = this.fit_zoom();
-        this.zoom = Math.min(Math.max(this.zoom * factor, least), 64);
-        this.fitted = this.zoom <= least;
+        const [ix, iy] = this.to_image(cx, cy);
+        this.zoom = Math.min(Math.max(this.zoom * factor, this.least_zoom()), 64);
+        this.fitted = this.zoom === this.fit_zoom();
         this.x = ix - (cx - this.width / 2) / this.zoom;
         this.y = iy - (cy - this.height / 2) / this.zoom;
         this.keep_inside();

@@ -47,13 +47,13 @@ export function listen_to_pointers(viewer: Viewer): void {
         if (event.pointerType === "mouse") viewer.update({pixel: null});
     });
     canvas.addEventListener("wheel", (event) => {
-        if (event.deltaY > 0 && view.fitted) return;  // nothing to zoom out of: the page scrolls
+        if (event.deltaY > 0 && view.zoom <= view.least_zoom()) return;  // nothing to zoom out of: the page scrolls
         event.preventDefault();
         view.zoom_by(2 ** (-event.deltaY / 300), ...place(viewer, event));
         point_at(viewer, event);
     }, {passive: false});
     canvas.addEventListener("dblclick", (event) => {
-        if (view.fitted) view.zoom_by(1 / view.zoom > 1 ? 1 / view.zoom : 4, ...place(viewer, event));
+        if (view.fitted) view.zoom_by(view.zoom < 1 ? 1 / view.zoom : 4, ...place(viewer, event));
         else view.fit();
         viewer.redraw();
     });

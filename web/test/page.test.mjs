@@ -132,6 +132,8 @@ test("wheel, drag and double click change the view", () => on_page("small.html",
     await page.mouse.up();
     const moved = await under(), zoom = 4 * fit;
     assert.ok(Math.hypot(moved[0] - before[0] + 80 / zoom, moved[1] - before[1] + 40 / zoom) < 0.01, "the image follows the drag");
+    await page.getByRole("button", {name: "One image pixel per screen pixel"}).click();
+    await until(page, {zoom: "1.0000"});
     await page.mouse.dblclick(at[0], at[1]);
     await page.waitForFunction((zoom) => Number(document.getElementById("viewer").dataset.zoom) === zoom, fit);
 }));
