@@ -70,21 +70,25 @@ export class Viewer {
         return pixels;
     }
 
-    // The scale of the false colours is set by the first errors shown, and kept for all entries.
-    private error_image(index: number, pixels: Pixels): ImageData | undefined {
-        const {state} = this, reference = this.pixels(this.reference);
-        if (!reference) return undefined;
-        const key = `${state.mode} ${index}`;
+    // Per pixel, by the metric that is shown; undefined for the image itself and while the data are being decoded.
+    pixel_errors(index: number): Float32Array | undefined {
+        const metric = error_metrics[this.state.mode], pixels = this.pixels(index), key = `${this.state.mode} ${index}`;
+        const reference = metric && this.pixels(this.reference);
+        if (!pixels || !reference) return undefined;
         let errors = this.errors.find((known) => known.key === key)?.values;
         if (!errors) {
-            errors = pixel_errors(pixels, reference, error_metrics[state.mode]!);
+            errors = pixel_errors(pixels, reference, metric);
             this.errors = [{key, values: errors}, ...this.errors].slice(0, 4);
         }
-        if (Number.isNaN(state.maximum)) {
-            if (index === this.reference) return false_colours(errors, pixels.width, 1, this.map);
-            state.maximum = quantile(errors, 0.99) || 1;
-        }
-        return false_colours(errors, pixels.width, state.maximum, this.map);
+        return errors;
+    }
+
+    // The scale of the false colours is set by the first errors shown, and kept for all entries.
+    private error_image(index: number): ImageData | undefined {
+        const {state} = this, errors = this.pixel_errors(index);
+        if (!errors) return undefined;
+        if (Number.isNaN(state.maximum) && index !== this.reference) state.maximum = quantile(errors, 0.99) || 1;
+        return false_colours(errors, this.view.image_width, state.maximum || 1, this.map);
     }
 
     private layer(index: number): HTMLCanvasElement | undefined {
@@ -92,7 +96,7 @@ export class Viewer {
         const key = mode === "image" ? `exposure ${exposure}` : `${mode} ${maximum}`;
         if (known?.key === key) return known.canvas;
         const pixels = this.pixels(index);
-        const image = pixels && (mode === "image" ? expose(pixels, exposure) : this.error_image(index, pixels));
+        const image = pixels && (mode === "image" ? expose(pixels, exposure) : this.error_image(index));
         if (!image) return undefined;
         const canvas = known?.canvas ?? document.createElement("canvas");
         canvas.width = image.width;

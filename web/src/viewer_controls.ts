@@ -22,6 +22,10 @@ function button(text: string, label: string, action: () => void): HTMLButtonElem
     return element;
 }
 
+function table_line(name: string, ...values: string[]): string {
+    return name.slice(0, 24).padEnd(24) + values.map((value) => value.padStart(11)).join("");
+}
+
 function draw_legend(canvas: HTMLCanvasElement, map: [number, number, number][]): void {
     canvas.width = map.length;
     canvas.height = 1;
@@ -72,8 +76,9 @@ export function viewer_section(data: PageData): HTMLElement | null {
     function value_line(index: number): string {
         const pixels = viewer.pixels(index), [x, y] = state.pixel!;
         if (!pixels) return "";
-        const values = [0, 1, 2].map((channel) => number_text(pixels.value(channel, y * pixels.width + x), 4).padStart(11));
-        return `${images[index]!.name.slice(0, 24).padEnd(24)}${values.join("")}`;
+        const pixel = y * pixels.width + x, error = viewer.pixel_errors(index)?.[pixel];
+        const values = [0, 1, 2].map((channel) => number_text(pixels.value(channel, pixel), 4));
+        return table_line(images[index]!.name, ...values, error === undefined ? "" : number_text(error, 4));
     }
 
     function refresh(): void {
@@ -102,7 +107,7 @@ export function viewer_section(data: PageData): HTMLElement | null {
                                        ready: String(viewer.seen().every((i) => viewer.images.get(i)))});
         const indices = [...new Set([...viewer.seen(), ...(reference < 0 ? [] : [reference])])];
         readout.textContent = state.pixel
-            ? [`${`x ${state.pixel[0]}, y ${state.pixel[1]}`.padEnd(24)}${["R", "G", "B"].map((c) => c.padStart(11)).join("")}`,
+            ? [table_line(`x ${state.pixel[0]}, y ${state.pixel[1]}`, "R", "G", "B", is_image ? "" : "error"),
                ...indices.map(value_line)].join("\n")
             : "Point at the image to read its linear values.";
     }

@@ -176,6 +176,34 @@ test("errors have the colours of the map, and grey where there is no number", ()
     assert.deepEqual((await colour(page, 40, 40)).slice(0, 2), [0, 0]);  // far below the maximum
 }));
 
+// From the values that the page shows, of 4 digits; the mean of the reference's values from the pattern itself.
+test("the errors under the cursor are those of the metrics' formulas", () => on_page("small.html", {}, async (page) => {
+    let mean = 0;
+    for (let y = 0; y < 54; ++y)
+        for (let x = 0; x < 96; ++x) {
+            const u = (x + 0.5) / 96, v = (y + 0.5) / 54;
+            mean += reference_value(x, y) * (1 + 0.55 + 0.4 * v + 0.9 - 0.6 * u) / (3 * 96 * 54);
+        }
+    const scale = (r) => r * r + 0.001 * mean * mean;
+    const formulas = {
+        squared: (i, r) => (i - r) ** 2, absolute: (i, r) => Math.abs(i - r),
+        relative_squared: (i, r) => (i - r) ** 2 / scale(r), relative_absolute: (i, r) => Math.abs(i - r) / Math.sqrt(scale(r)),
+        smape: (i, r) => 2 * Math.abs(i - r) / (i + r),
+    };
+    for (const [mode, formula] of Object.entries(formulas)) {
+        await page.getByLabel("Show").selectOption(mode);
+        await until(page, {mode, shown: "mmlt"});
+        for (const [x, y] of [[30, 20], [59, 24], [80, 28]]) {
+            await page.mouse.move(...(await place(page, x, y)));
+            await page.waitForFunction((at) => document.getElementById("readout").textContent.startsWith(at), `x ${x}, y ${y} `);
+            const rows = (await page.locator("#readout").textContent()).split("\n").slice(1).map((line) => line.trim().split(/ +/).slice(1).map(Number));
+            const [image, reference] = rows, expected = [0, 1, 2].reduce((sum, c) => sum + formula(image[c], reference[c]) / 3, 0);
+            assert.ok(Math.abs(image[3] / expected - 1) < 0.02, `${mode} at ${x}, ${y}: ${image[3]}, not ${expected}`);
+            assert.equal(reference[3], 0);
+        }
+    }
+}));
+
 test("plots and tables show every entry, and names are text", () => on_page("small.html", {}, async (page) => {
     assert.equal(await page.locator("#convergence-plot .plot .line").count(), 3);
     assert.equal(await page.locator("#metric-table tbody tr").count(), 3);
