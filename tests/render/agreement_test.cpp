@@ -61,11 +61,8 @@ TEST_P(Agrees, WithBidirectionalPathTracing) {
     expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, std::string(c.scene) + "-path");
 }
 
-INSTANTIATE_TEST_SUITE_P(OwnScenes, Agrees, testing::ValuesIn(cases), [](const auto& test) {
-    std::string name = test.param.scene;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(OwnScenes, Agrees, testing::ValuesIn(cases),
+                         [](const auto& test) { return test_name_of(test.param.scene); });
 
 }  // namespace
 }  // namespace keyhole

@@ -1,26 +1,14 @@
 // The project's own scenes: each loads without a word, needs what its description says, and together they cover every
 // plugin of the reader.
+#include "own_scenes.h"
+
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "scene/reader.h"
-
 namespace keyhole {
 namespace {
-
-const std::filesystem::path folder = std::filesystem::path(KEYHOLE_SOURCE_DIR) / "scenes";
-
-std::vector<std::string> own_scenes() {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".xml") names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
 
 std::string text_of(const std::filesystem::path& file) {
     std::ostringstream text;
@@ -28,7 +16,7 @@ std::string text_of(const std::filesystem::path& file) {
     return text.str();
 }
 
-LoadedScene load(const std::string& name) { return read_scene((folder / (name + ".xml")).string()); }
+LoadedScene load(const std::string& name) { return read_scene((own_scenes_folder / (name + ".xml")).string()); }
 
 class OwnScene : public testing::TestWithParam<std::string> {};
 
@@ -41,10 +29,10 @@ TEST_P(OwnScene, LoadsWithoutWarnings) {
 }
 
 TEST_P(OwnScene, IsDescribed) {
-    const std::string text = text_of(folder / (GetParam() + ".xml"));
+    const std::string text = text_of(own_scenes_folder / (GetParam() + ".xml"));
     EXPECT_EQ(text.rfind("<!-- ", 0), 0u) << "no comment at the top";
     EXPECT_LT(text.find("Hard: "), text.find("<scene ")) << "the comment does not say what is hard";
-    EXPECT_NE(text_of(folder / "README.md").find("| `" + GetParam() + "` |"), std::string::npos);
+    EXPECT_NE(text_of(own_scenes_folder / "README.md").find("| `" + GetParam() + "` |"), std::string::npos);
 }
 
 // Lengths are metres, and so are the sizes of rooms and tables.
@@ -54,14 +42,11 @@ TEST_P(OwnScene, HasTheScaleOfARoom) {
     EXPECT_LT(radius, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, OwnScene, testing::ValuesIn(own_scenes()), [](const auto& test) {
-    std::string name = test.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, OwnScene, testing::ValuesIn(own_scene_names()),
+                         [](const auto& test) { return test_name_of(test.param); });
 
 TEST(OwnScenes, RequireWhatTheyAreMadeFor) {
-    for (const std::string& name : own_scenes()) {
+    for (const std::string& name : own_scene_names()) {
         const auto loaded = load(name);
         const Requirements& needs = loaded.scene->requirements();
         EXPECT_EQ(needs.aperture, name == "stage") << name;
@@ -76,7 +61,7 @@ TEST(OwnScenes, RequireWhatTheyAreMadeFor) {
 
 TEST(OwnScenes, CoverEveryPlugin) {
     std::string all;
-    for (const std::string& name : own_scenes()) all += text_of(folder / (name + ".xml"));
+    for (const std::string& name : own_scene_names()) all += text_of(own_scenes_folder / (name + ".xml"));
     for (const char* kind : {"bsdf:diffuse",
                              "bsdf:conductor",
                              "bsdf:roughconductor",

@@ -1,0 +1,89 @@
+// What a mutation is made of, on each of the project's own scenes: rays, charts, and whole steps of a chain.
+#include <benchmark/benchmark.h>
+
+#include "own_scenes.h"
+#include "render/bootstrap.h"
+#include "render/chain_worker.h"
+
+namespace keyhole {
+namespace {
+
+constexpr int film_size = 256, max_length = 8;
+
+// Paths of two edges and more, as `keyhole bench` has them: those of one edge cost next to nothing.
+const TechniqueDistribution all_techniques(2, max_length);
+
+std::unique_ptr<Scene> load(const std::string& name) { return own_scene(name, film_size, film_size); }
+
+// Rays of one kind that large steps cast, in their order.
+std::vector<Ray> rays_of_large_steps(const Scene& scene, bool occlusion) {
+    const CoordinateLayout layout(scene, max_length);
+    Chart chart(scene, layout);
+    const LargeStep large(chart, all_techniques);
+    PssState state(layout);
+    std::vector<RecordedRay> recorded;
+    chart.tracer().record_into(&recorded);
+    Rng rng(1);
+    for (int i = 0; i < 20000; ++i) large.draw(state, rng);
+    std::vector<Ray> rays;
+    for (const RecordedRay& r : recorded)
+        if (r.occlusion == occlusion) rays.push_back(r.ray);
+    return rays;
+}
+
+template <bool occlusion>
+void cast(benchmark::State& state, const std::string& name) {
+    const auto scene = load(name);
+    const std::vector<Ray> rays = rays_of_large_steps(*scene, occlusion);
+    SurfacePoint hit;
+    std::size_t i = 0;
+    for (auto _ : state) {
+        const Ray& ray = rays[i];
+        if (++i == rays.size()) i = 0;
+        if constexpr (occlusion)
+            benchmark::DoNotOptimize(scene->unoccluded(ray));
+        else
+            benchmark::DoNotOptimize(scene->intersect(ray, hit));
+    }
+}
+
+// Charts of all techniques, uniform coordinates; drawing those is part of it.
+void evaluate_chart(benchmark::State& state, const std::string& name) {
+    const auto scene = load(name);
+    const CoordinateLayout layout(*scene, max_length);
+    Chart chart(*scene, layout);
+    const LargeStep large(chart, all_techniques);
+    PssState drawn(layout);
+    Rng rng(1);
+    for (auto _ : state) benchmark::DoNotOptimize(large.draw(drawn, rng));
+}
+
+// Steps of a mixture as `keyhole render` has it by default, with their splats.
+void mutate(benchmark::State& state, const std::string& name) {
+    const auto scene = load(name);
+    RenderSettings settings;
+    settings.mutations_per_pixel = 1;
+    settings.min_length = 2;
+    settings.max_length = max_length;
+    settings = resolve(*scene, settings);
+    const CoordinateLayout layout(*scene, max_length);
+    TechniqueDistribution techniques = all_techniques;
+    Bootstrap bootstrap = run_bootstrap(*scene, layout, techniques, 100000, 1, 0);
+    RunningChain running{Chain<PssState>(bootstrap.seeds.front()), Rng(1), {}};
+    ChainWorker worker(*scene, layout, techniques, settings);
+    for (auto _ : state) worker.advance(running, 1);
+}
+
+const bool added = [] {
+    for (const std::string& name : own_scene_names()) {
+        if (name == "four-holes") continue;  // paths of one edge only
+        benchmark::RegisterBenchmark(("intersect/" + name).c_str(), cast<false>, name);
+        benchmark::RegisterBenchmark(("unoccluded/" + name).c_str(), cast<true>, name);
+        benchmark::RegisterBenchmark(("chart_evaluate/" + name).c_str(), evaluate_chart, name);
+        benchmark::RegisterBenchmark(("mutation/" + name).c_str(), mutate, name);
+    }
+    return true;
+}();
+
+}  // namespace
+}  // namespace keyhole
