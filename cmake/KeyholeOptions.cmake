@@ -8,6 +8,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 # sqrt must not set errno: the inner loop takes many square roots.
 target_compile_options(keyhole_options INTERFACE -fno-math-errno)
+# Vectors of four doubles are no part of the ABI before AVX: none crosses a library's border.
+target_compile_options(keyhole_options INTERFACE -Wno-psabi)
 if(KEYHOLE_WERROR)
   target_compile_options(keyhole_options INTERFACE -Werror)
 endif()

@@ -4,8 +4,6 @@
 // four numbers, and no two streams ever share a number.
 #pragma once
 
-#include <Random123/philox.h>
-
 #include <array>
 #include <cstdint>
 
@@ -13,26 +11,36 @@ namespace keyhole {
 
 class Rng {
   public:
+    static constexpr std::uint32_t buffered = 32;  // words
+
     struct State {
-        std::uint64_t seed = 0, stream = 0, block = 0;
-        std::uint32_t used = 4;  // words of the current block already handed out
+        std::uint64_t seed = 0, stream = 0, block = 0;  // the next block of four words to be made
+        std::uint32_t used = buffered;                  // words of the buffer already handed out
         bool operator==(const State&) const = default;
     };
 
-    explicit Rng(std::uint64_t seed = 0, std::uint64_t stream = 0) : state_{seed, stream, 0, 4} {}
+    explicit Rng(std::uint64_t seed = 0, std::uint64_t stream = 0) : state_{seed, stream, 0, buffered} {}
     explicit Rng(const State& state) : state_(state) {
-        if (state_.used < 4) fill(state_.block - 1);
+        if (state_.used == buffered) return;
+        state_.block -= blocks;
+        refill();
+        state_.used = state.used;
     }
 
     const State& state() const { return state_; }
 
     // Uniform 32-bit word.
     std::uint32_t bits() {
-        if (state_.used == 4) {
-            fill(state_.block++);
-            state_.used = 0;
-        }
+        if (state_.used == buffered) [[unlikely]]
+            refill();
         return words_[state_.used++];
+    }
+
+    // `n` <= buffered words at once, valid until the next call: the rest of a buffer that holds fewer is left out.
+    const std::uint32_t* bits(std::uint32_t n) {
+        if (state_.used + n > buffered) refill();
+        state_.used += n;
+        return &words_[state_.used - n];
     }
 
     // Uniform in [0, 1), 53 bits.
@@ -45,18 +53,12 @@ class Rng {
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(uniform() * n); }
 
   private:
-    void fill(std::uint64_t block) {
-        const r123::Philox4x32::ctr_type counter = {
-            {static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(block >> 32),
-             static_cast<std::uint32_t>(state_.stream), static_cast<std::uint32_t>(state_.stream >> 32)}};
-        const r123::Philox4x32::key_type key = {
-            {static_cast<std::uint32_t>(state_.seed), static_cast<std::uint32_t>(state_.seed >> 32)}};
-        const auto r = r123::Philox4x32()(counter, key);
-        words_ = {r[0], r[1], r[2], r[3]};
-    }
+    static constexpr std::uint32_t blocks = buffered / 4;
+
+    void refill();  // rng.cpp
 
     State state_;
-    std::array<std::uint32_t, 4> words_{};
+    std::array<std::uint32_t, buffered> words_;
 };
 
 }  // namespace keyhole

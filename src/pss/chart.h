@@ -3,19 +3,20 @@
 
 #include <vector>
 
+#include "base/lanes.h"
 #include "pathspace/connect.h"
 #include "pss/layout.h"
 
 namespace keyhole {
 
 // A point of the chart t of paths with k edges. Eye coordinates first, light coordinates from `light()` on; both arrays
-// have the layout's full capacity, of which the prefix that (k, t) uses is meaningful.
+// have the layout's full capacity in whole lanes, of which the prefix that (k, t) uses is meaningful.
 struct PrimarySample {
     int k = 0, t = 0;
     std::vector<double> eye, light;
 
     explicit PrimarySample(const CoordinateLayout& layout)
-        : eye(layout.eye_capacity()), light(layout.light_capacity()) {}
+        : eye(whole_lanes(layout.eye_capacity())), light(whole_lanes(layout.light_capacity())) {}
     int s() const { return k + 1 - t; }
 };
 

@@ -1,8 +1,10 @@
 // Symmetric steps in primary sample space, wrapped to the unit torus.
 #pragma once
 
+#include <bit>
 #include <cmath>
 
+#include "base/lanes.h"
 #include "base/rng.h"
 #include "base/vec.h"
 
@@ -14,18 +16,38 @@ inline double wrap_unit(double x) {
     return y < 1 ? y : 0;  // -1e-20 wraps to 1 in floating point
 }
 
+// The same for four coordinates and steps in (-1, 1), without branches.
+inline Double4 wrap_unit(Double4 x) {
+    const auto one = std::bit_cast<Int64x4>(Double4{1, 1, 1, 1});
+    x += std::bit_cast<Double4>(one & (x < 0)) - std::bit_cast<Double4>(one & (x >= 1));
+    return std::bit_cast<Double4>(std::bit_cast<Int64x4>(x) & (x < 1));
+}
+
+// 2^x for x in [-126, 0], to 4e-6 relative: Taylor's series for the fraction in [-1/2, 1/2], the exponent by its bits.
+inline Float8 exp2_approximate(Float8 x) {
+    const Int32x8 whole = __builtin_convertvector(x - 0.5f, Int32x8);
+    const Float8 f = x - __builtin_convertvector(whole, Float8);
+    const Float8 series =
+        1 + f * (0.693147182f + f * (0.240226507f + f * (0.0555041087f + f * (0.00961812911f + f * 0.00133335581f))));
+    return series * std::bit_cast<Float8>((whole + 127) << 23);
+}
+
 // |step| = s2 (s1/s2)^U, uniform in logarithm between s1 and s2 [Kelemen 2002, section 4].
 struct KelemenKernel {
     explicit KelemenKernel(double s1 = 1.0 / 1024, double s2 = 1.0 / 64)
         : scale_(static_cast<float>(s2)), log2_ratio_(static_cast<float>(std::log2(s1 / s2)) * 0x1p-31f) {}
 
-    // `n` coordinates at once. One random word each: a sign and a magnitude, which are independent, so the step is
-    // symmetric whatever the rounding of the magnitude.
+    // `n` coordinates at once, and those up to the next multiple of `lanes` with them (of no meaning). One random word
+    // each: a sign and a magnitude, which are independent, so the step is symmetric whatever the rounding of the
+    // magnitude.
     void operator()(const double* x, double* y, int n, Rng& rng) const {
-        for (int i = 0; i < n; ++i) {
-            const std::uint32_t word = rng.bits();
-            const float magnitude = scale_ * std::exp2(log2_ratio_ * static_cast<float>(word >> 1));
-            y[i] = wrap_unit(x[i] + ((word & 1) ? magnitude : -magnitude));
+        for (int first = 0; first < n; first += lanes) {
+            const auto words = load_lanes<UInt32x8>(rng.bits(lanes));
+            const Float8 uniform = __builtin_convertvector(std::bit_cast<Int32x8>(words >> 1), Float8);
+            const Float8 magnitude = scale_ * exp2_approximate(log2_ratio_ * uniform);
+            const auto step = std::bit_cast<Float8>(std::bit_cast<UInt32x8>(magnitude) | words << 31);
+            store_lanes(wrap_unit(load_lanes<Double4>(x + first) + low_half(step)), y + first);
+            store_lanes(wrap_unit(load_lanes<Double4>(x + first + 4) + high_half(step)), y + first + 4);
         }
     }
 

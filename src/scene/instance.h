@@ -11,11 +11,7 @@ struct InstanceTransform {
     Eigen::Matrix3d normal;     // takes normals to world space, not normalised (the inverse transpose)
     Eigen::Matrix3d magnitude;  // |M^-1| |M| |M^-1|: what float errors in world space grow to in local space
 
-    explicit InstanceTransform(const Affine& transform)
-        : to_world(transform.cast<float>().cast<double>()),
-          to_local(to_world.inverse()),
-          normal(to_local.linear().transpose()),
-          magnitude(to_local.linear().cwiseAbs() * to_world.linear().cwiseAbs() * to_local.linear().cwiseAbs()) {}
+    explicit InstanceTransform(const Affine& transform);
 };
 
 }  // namespace keyhole

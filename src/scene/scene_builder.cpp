@@ -28,8 +28,10 @@ void SceneBuilder::add_shape(std::shared_ptr<const Mesh> mesh, std::unique_ptr<A
 
 void SceneBuilder::add_mesh(std::shared_ptr<const Mesh> mesh, const ShapeOptions& options) {
     check_invertible(options.to_world, "mesh");
-    if (parts_->checked.insert(mesh.get()).second) check_mesh(*mesh);
+    const Mesh* address = mesh.get();
+    if (!parts_->checked.contains(address)) check_mesh(*mesh);
     add_shape(std::move(mesh), nullptr, options);
+    parts_->checked.insert(address);  // only of a mesh that is kept: another may get the address of one refused
 }
 
 void SceneBuilder::add_rectangle(const ShapeOptions& options) {

@@ -1,5 +1,6 @@
 #include "base/rng.h"
 
+#include <Random123/philox.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,21 +15,37 @@ namespace {
 const double level = sidak_level(1e-3, 3);
 
 TEST(Rng, IsPhilox4x32With10Rounds) {
-    // First known answer of Random123's kat_vectors: counter and key zero.
-    Rng rng(0, 0);
-    EXPECT_EQ(rng.bits(), 0x6627e8d5u);
-    EXPECT_EQ(rng.bits(), 0xe169c58du);
-    EXPECT_EQ(rng.bits(), 0xbc57ac4cu);
-    EXPECT_EQ(rng.bits(), 0x9b00dbd8u);
+    const std::uint64_t seed = 0x0123456789abcdef, stream = 0xfedcba9876543210;
+    for (const std::uint64_t block : {std::uint64_t{0}, std::uint64_t{0xfffffffc}}) {  // carries into the high word
+        Rng rng(Rng::State{seed, stream, block + Rng::buffered / 4, 0});
+        for (std::uint64_t b = block; b < block + 20; ++b) {
+            const auto expected = r123::Philox4x32()(
+                {{static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(b >> 32),
+                  static_cast<std::uint32_t>(stream), static_cast<std::uint32_t>(stream >> 32)}},
+                {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}});
+            for (int i = 0; i < 4; ++i) ASSERT_EQ(rng.bits(), expected[i]) << b << ' ' << i;
+        }
+    }
+}
+
+TEST(Rng, HandsOutWordsInGroups) {
+    Rng one(1, 2), group(1, 2);
+    for (int i = 0; i < 4; ++i) {
+        const std::uint32_t* words = group.bits(8);
+        for (int j = 0; j < 8; ++j) EXPECT_EQ(words[j], one.bits());
+    }
+    group.bits();
+    EXPECT_NE(group.bits(Rng::buffered), nullptr);  // does not fit beside the word: the buffer's rest is left out
+    EXPECT_EQ(group.state().used, Rng::buffered);
 }
 
 TEST(Rng, GoesOnFromASavedState) {
-    for (int position = 0; position < 10; ++position) {
+    for (int position = 0; position < 70; ++position) {
         Rng rng(3, 5);
         for (int i = 0; i < position; ++i) rng.bits();
         Rng restored(rng.state());
         EXPECT_EQ(restored.state(), rng.state());
-        for (int i = 0; i < 9; ++i) ASSERT_EQ(restored.bits(), rng.bits()) << position;
+        for (int i = 0; i < 40; ++i) ASSERT_EQ(restored.bits(), rng.bits()) << position;
         EXPECT_EQ(restored.state(), rng.state());
     }
 }

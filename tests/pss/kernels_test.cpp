@@ -51,7 +51,7 @@ TYPED_TEST(Kernels, StepsAreSymmetric) {
 TYPED_TEST(Kernels, KeepTheUniformDistribution) {
     const TypeParam kernel;
     Rng rng(2);
-    constexpr int n = 5, bins = 50, rounds = 60000;
+    constexpr int n = 2 * lanes, bins = 50, rounds = 60000;
     std::vector<double> observed(bins, 0.0);
     double x[n], y[n];
     for (int i = 0; i < rounds; ++i) {
@@ -74,7 +74,7 @@ TEST(KelemenKernel, StepsLieBetweenItsBounds) {
     const double s1 = 1.0 / 512, s2 = 1.0 / 16;
     const KelemenKernel kernel(s1, s2);
     Rng rng(3);
-    double x[4] = {0.5, 0.5, 0.5, 0.5}, y[4], smallest = 1, largest = 0;
+    double x[lanes] = {0.5, 0.5, 0.5, 0.5}, y[lanes], smallest = 1, largest = 0;
     for (int i = 0; i < 100000; ++i) {
         kernel(x, y, 4, rng);
         for (int j = 0; j < 4; ++j) {
@@ -86,10 +86,19 @@ TEST(KelemenKernel, StepsLieBetweenItsBounds) {
     EXPECT_NEAR(largest, s2, 1e-4 * s2);
 }
 
+TEST(Exp2Approximate, IsGoodToFourInAMillion) {
+    for (float x = 0; x >= -126; x -= 0.001f)
+        ASSERT_NEAR(exp2_approximate(Float8{} + x)[0] / std::exp2(static_cast<double>(x)), 1, 4e-6) << x;
+}
+
 TEST(WrapUnit, NeverReturnsOne) {
     for (const double x : {-1e-20, -0.0, 0.0, 1.0, -1.0, 1 - 0x1p-53, 2.75, -3.25}) {
         EXPECT_GE(wrap_unit(x), 0);
         EXPECT_LT(wrap_unit(x), 1);
+    }
+    for (const Double4 x : {Double4{-1e-20, -0.0, 0.0, 1.0}, Double4{-1.0, 1 - 0x1p-53, 1.75, -0.25}}) {
+        const Double4 wrapped = wrap_unit(x);
+        for (int i = 0; i < 4; ++i) EXPECT_EQ(wrapped[i], wrap_unit(double{x[i]})) << x[i];
     }
     EXPECT_DOUBLE_EQ(wrap_unit(2.75), 0.75);
     EXPECT_DOUBLE_EQ(wrap_unit(-0.25), 0.75);

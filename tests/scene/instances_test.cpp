@@ -20,13 +20,16 @@ ShapeOptions with_id(const Affine& to_world, bool flip) {
     return options;
 }
 
-void expect_same_surfaces(const Scene& a, const Scene& b, double tolerance) {
-    ASSERT_NEAR(a.radius(), b.radius(), 1e-5 * b.radius());
+// `tolerance` is of positions, relative to the scene.
+void expect_same_surfaces(const Scene& a, const Scene& b, double tolerance, double normal_tolerance = 1e-5) {
+    // The box of an instance is the box of its group's transformed box: it holds the shapes, but not tightly.
+    ASSERT_GE(a.radius(), b.radius() * (1 - 1e-6));
+    ASSERT_LE(a.radius(), b.radius() * std::sqrt(3.0));
     Rng rng(1, 1);
     int hits = 0, differ = 0;
     for (int i = 0; i < 20000; ++i) {
-        const Vec3 o = a.center() + 2 * a.radius() * uniform_direction(rng);
-        const Vec3 d = (a.center() + 0.7 * a.radius() * uniform_direction(rng) - o).normalized();
+        const Vec3 o = b.center() + 2 * b.radius() * uniform_direction(rng);
+        const Vec3 d = (b.center() + 0.7 * b.radius() * uniform_direction(rng) - o).normalized();
         SurfacePoint x, y;
         const bool hit = a.intersect({o, d}, x);
         if (hit != b.intersect({o, d}, y)) {
@@ -39,16 +42,17 @@ void expect_same_surfaces(const Scene& a, const Scene& b, double tolerance) {
             ++differ;
             continue;
         }
+        ASSERT_LE((x.p - a.center()).norm(), a.radius() * (1 + 1e-6));
         ASSERT_LE((x.p - y.p).norm(), tolerance * (o.norm() + a.radius()));
-        ASSERT_LE((x.ng - y.ng).norm(), 1e-5);
-        ASSERT_LE((x.frame.n - y.frame.n).norm(), 1e-5);
+        ASSERT_LE((x.ng - y.ng).norm(), normal_tolerance);
+        ASSERT_LE((x.frame.n - y.frame.n).norm(), normal_tolerance);
         ASSERT_LE((x.p - o).cross(d).norm(), 1e-14 * (o.norm() + a.radius()));
     }
-    EXPECT_GT(hits, 4000);
+    EXPECT_GT(hits, 3000);
     EXPECT_LE(differ, 20);
 }
 
-TEST(Instances, DISABLED_OfAGroupEqualBakedShapes) {
+TEST(Instances, OfAGroupEqualBakedShapes) {
     const Affine local = similarity(0.5, 1, {0.5, 0, 0});
     const Vec3 places[] = {{0, 0, 0}, {6, 1, 0}, {-3, 7, 2}};
     SceneBuilder instanced, baked;
@@ -69,7 +73,7 @@ TEST(Instances, DISABLED_OfAGroupEqualBakedShapes) {
     EXPECT_EQ(a->statistics().unique_triangles, 128U + 12U);
 }
 
-TEST(Instances, DISABLED_OfAnalyticShapesEqualBakedOnes) {
+TEST(Instances, OfAnalyticShapesEqualBakedOnes) {
     const Affine m = similarity(1.3, 2, {4, -1, 2});
     SceneBuilder instanced, baked;
     instanced.begin_group("round");
@@ -149,7 +153,7 @@ std::shared_ptr<Mesh> grid(std::uint32_t n) {
     return mesh;
 }
 
-TEST(Instances, DISABLED_ShareAMeshOnlyWhereThatSavesMuchMemory) {
+TEST(Instances, ShareAMeshOnlyWhereThatSavesMuchMemory) {
     const std::shared_ptr<const Mesh> large = grid(350), small = grid(10);
     const BsdfPtr bsdfs[] = {make_diffuse(Spectrum(0.1, 0.1, 0.1)), make_null()};
     const auto build = [&](int uses, bool same_pointer, const std::shared_ptr<const Mesh>& mesh) {
@@ -165,8 +169,11 @@ TEST(Instances, DISABLED_ShareAMeshOnlyWhereThatSavesMuchMemory) {
     const auto shared = build(4, true, large), baked = build(4, false, large);
     EXPECT_EQ(shared->statistics().instances, 4U);
     EXPECT_EQ(baked->statistics().instances, 0U);
-    EXPECT_LT(shared->statistics().embree_bytes + (std::size_t{50} << 20), baked->statistics().embree_bytes);
-    expect_same_surfaces(*shared, *baked, 1e-5);
+    const auto bytes = [](const Scene& s) { return s.statistics().embree_bytes + s.statistics().mesh_bytes; };
+    // As much as the builder wants to save; the copies of the mesh that `baked` was given do not count.
+    EXPECT_LT(bytes(*shared) + (std::size_t{64} << 20), bytes(*baked) - 3 * large->bytes());
+    // Baked corners (coordinates below 16) are off by 2^-20, edges by twice that; altitudes are above 2e-3.
+    expect_same_surfaces(*shared, *baked, 1e-5, 1e-3);
     SurfacePoint x;
     ASSERT_TRUE(shared->intersect({{4, 0, 50}, {0, 0, -1}}, x));
     EXPECT_EQ(x.bsdf, bsdfs[1].get());

@@ -101,8 +101,11 @@ void MeshShape::make_planes() {
         const Vec3 cross = f.cross();
         const double length = cross.norm();
         const Vec3 n = cross / length, weight = f.error_weight(length);
+        // fill() puts points back onto the plane but for 2^-53 of the way, itself 2^-51 of the ray's coordinates: beside
+        // a plane coordinate next to zero that is not small. Good for coordinates up to 2^14 times the triangle's.
+        const double put_back = 0x1p-90 * (f.v0.cwiseAbs() + f.extent()).sum();
         planes_.push_back(
-            {n, n.dot(f.v0), (16 * weight).cast<float>(), static_cast<float>(8 * weight.dot(f.extent()))});
+            {n, n.dot(f.v0), (16 * weight).cast<float>(), static_cast<float>(8 * weight.dot(f.extent()) + put_back)});
     }
 }
 
@@ -179,13 +182,16 @@ void MeshShape::set_frame(const ShapeHit& hit, SurfacePoint& x) const {
     }
 }
 
-// False where the vertex normals cancel.
+// False where the vertex normals cancel. Under an instance they are normalised before they are interpolated, as those of
+// a copy under the same transform are: whether a mesh is copied or instanced does not show.
 bool MeshShape::shading_normal(std::uint32_t primitive, const InstanceTransform* instance, const Vec2& b,
                                Vec3& n) const {
     const auto& index = triangles_[primitive];
-    n = (1 - b.x() - b.y()) * lift(normals_[index[0]]) + b.x() * lift(normals_[index[1]]) +
-        b.y() * lift(normals_[index[2]]);
-    if (instance) n = instance->normal * n;
+    const auto normal = [&](int k) -> Vec3 {
+        const Vec3 at_corner = lift(normals_[index[k]]);
+        return instance ? (instance->normal * at_corner).normalized() : at_corner;
+    };
+    n = (1 - b.x() - b.y()) * normal(0) + b.x() * normal(1) + b.y() * normal(2);
     const double length2 = n.squaredNorm();
     if (!(length2 > 0)) return false;
     n *= (flip_normals ? -1 : 1) / std::sqrt(length2);
