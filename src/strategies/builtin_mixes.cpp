@@ -10,6 +10,7 @@ const std::vector<Mix>& builtin_mixes() {
     static const std::vector<Mix> mixes = [] {
         std::vector<Mix> all;
         for (const BuiltinMixText& file : builtin_mix_texts()) all.push_back(parse_mix(file.text, file.filename));
+        std::sort(all.begin(), all.end(), [](const Mix& a, const Mix& b) { return a.name < b.name; });
         return all;
     }();
     return mixes;
