@@ -8,8 +8,6 @@
 namespace keyhole {
 namespace {
 
-using Type = ReconstructionFilter::Type;
-
 void require_positive(double value, const char* what) {
     if (!(value > 0) || !std::isfinite(value)) throw std::invalid_argument(std::string(what) + " must be positive");
 }
@@ -17,20 +15,6 @@ void require_positive(double value, const char* what) {
 double gaussian(double x, double stddev) { return std::exp(-0.5 * sqr(x / stddev)); }
 
 }  // namespace
-
-double ReconstructionFilter::operator()(double x) const {
-    const double distance = std::abs(x);
-    if (distance > radius) return 0;
-    switch (type) {
-        case Type::box:
-            return scale;
-        case Type::tent:
-            return scale * (1 - distance / radius);
-        case Type::gaussian:
-            return scale * (gaussian(x, stddev) - shift);
-    }
-    return 0;
-}
 
 const char* ReconstructionFilter::name() const {
     switch (type) {
@@ -43,6 +27,8 @@ const char* ReconstructionFilter::name() const {
     }
     return "";
 }
+
+using Type = ReconstructionFilter::Type;
 
 ReconstructionFilter make_box_filter(double radius) {
     require_positive(radius, "the filter's radius");

@@ -1,6 +1,7 @@
 // Reconstruction filters: separable, even, unit integral over the plane in units of pixels.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 namespace keyhole {
@@ -12,7 +13,20 @@ struct ReconstructionFilter {
     double scale = 1;     // these two are set by the factories below
     double shift = 0;
 
-    double operator()(double x) const;  // value in one dimension; normalised over its support
+    // Value in one dimension; normalised over its support.
+    double operator()(double x) const {
+        const double distance = std::abs(x);
+        if (distance > radius) return 0;
+        switch (type) {
+            case Type::box:
+                return scale;
+            case Type::tent:
+                return scale * (1 - distance / radius);
+            case Type::gaussian:
+                return scale * (std::exp(-0.5 * (x / stddev) * (x / stddev)) - shift);
+        }
+        return 0;
+    }
     const char* name() const;
 };
 

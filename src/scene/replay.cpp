@@ -20,7 +20,7 @@ RayReplay::RayReplay(const Scene& scene, std::span<const RecordedRay> rays)
     : queries_(new Queries{scene.embree(), {}}) {
     queries_->rays.reserve(rays.size());
     for (const RecordedRay& r : rays) {
-        const EmbreeQuery query{r.ray.o + r.ray.offset, r.ray.d, r.ray.tnear, r.ray.tfar};
+        const EmbreeQuery query{r.ray.o + r.ray.offset - scene.origin(), r.ray.d, r.ray.tnear, r.ray.tfar};
         queries_->rays.push_back({EmbreeScene::ray_hit(query), query, r.occlusion});
     }
 }

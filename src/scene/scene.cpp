@@ -10,7 +10,7 @@ namespace keyhole {
 Scene::Scene() = default;
 Scene::~Scene() = default;
 
-bool Scene::intersect(const Ray& ray, SurfacePoint& x) const {
+bool Scene::intersect_shapes(const Ray& ray, SurfacePoint& x) const {
     ShapeHit hit;
     const Shape* shape = embree_->intersect({ray.o + ray.offset, ray.d, ray.tnear, ray.tfar}, hit);
     if (!shape) return false;
@@ -20,17 +20,28 @@ bool Scene::intersect(const Ray& ray, SurfacePoint& x) const {
     return true;
 }
 
+bool Scene::intersect(const Ray& ray, SurfacePoint& x) const {
+    if (!moved_) [[likely]]
+        return intersect_shapes(ray, x);
+    Ray moved = ray;
+    moved.o -= origin_;
+    if (!intersect_shapes(moved, x)) return false;
+    x.p += origin_;
+    x.offset += origin_rounding(origin_);
+    return true;
+}
+
 bool Scene::unoccluded(const Ray& ray) const {
-    return embree_->unoccluded({ray.o + ray.offset, ray.d, ray.tnear, ray.tfar});
+    return embree_->unoccluded({ray.o + ray.offset - origin_, ray.d, ray.tnear, ray.tfar});
 }
 
 // The float error at the far end grows with the coordinates of both ends, its offset only with its own: so the far end
 // is the one with the larger coordinates.
 bool Scene::unoccluded(const Vec3& a, const Vec3& b) const {
-    const bool swap = b.squaredNorm() < a.squaredNorm();
+    const bool swap = (b - origin_).squaredNorm() < (a - origin_).squaredNorm();
     const Vec3& from = swap ? b : a;
     const Vec3& to = swap ? a : b;
-    return embree_->unoccluded({from, to - from, 0, 1});
+    return embree_->unoccluded({from - origin_, to - from, 0, 1});
 }
 
 std::uint32_t Scene::choose_emitter(double u) const {

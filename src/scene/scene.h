@@ -73,6 +73,9 @@ class Scene {
     const Emitter* environment() const { return environment_; }
 
     const EmbreeScene& embree() const { return *embree_; }
+    // Shapes and Embree's hierarchy have coordinates relative to this point: zero, but for scenes far from it, where
+    // floats are coarse.
+    const Vec3& origin() const { return origin_; }
     const Sensor& sensor() const { return *sensor_; }
     const FilmSettings& film() const { return film_; }
     const Requirements& requirements() const { return requirements_; }
@@ -86,8 +89,11 @@ class Scene {
   private:
     friend class SceneBuilder;
     Scene();
+    bool intersect_shapes(const Ray& ray, SurfacePoint& x) const;  // both relative to origin()
     static double side(const Vec3& ng, const Vec3& w) { return w.dot(ng) > 0 ? 1 : -1; }
 
+    Vec3 origin_{0, 0, 0};
+    bool moved_ = false;  // origin_ is not zero
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::unique_ptr<EmbreeScene> embree_;
     std::vector<std::shared_ptr<const Emitter>> owned_emitters_;

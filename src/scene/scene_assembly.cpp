@@ -27,6 +27,47 @@ void unite(BsdfTraits& all, const BsdfTraits& one) {
 
 }  // namespace
 
+// Zero, unless the scene lies so far from it that floats would spend their digits on the way there: then a point near
+// its middle, of few digits, so that subtracting it from floats is exact.
+Vec3 SceneBuilder::Parts::choose_origin() const {
+    std::unordered_map<const Mesh*, Eigen::AlignedBox3d> mesh_boxes;
+    std::vector<Eigen::AlignedBox3d> group_boxes(groups.size());
+    Eigen::AlignedBox3d box;
+    for (const Item& item : items) {
+        Eigen::AlignedBox3d own;
+        if (item.mesh) {
+            Eigen::AlignedBox3d& mesh_box = mesh_boxes[item.mesh.get()];
+            if (mesh_box.isEmpty())
+                for (const Vec3f& p : item.mesh->positions) mesh_box.extend(p.cast<double>());
+            own = mesh_box.transformed(Eigen::Affine3d(item.options.to_world));
+        } else {
+            const auto [lower, upper] = item.analytic->bounds();
+            own = {lower, upper};
+        }
+        (item.group == top_level ? box : group_boxes[static_cast<std::size_t>(item.group)]).extend(own);
+    }
+    for (const Instance& instance : instances) {
+        const auto& group_box = group_boxes[static_cast<std::size_t>(instance.group)];
+        if (!group_box.isEmpty()) box.extend(group_box.transformed(Eigen::Affine3d(instance.to_world)));
+    }
+    if (box.isEmpty()) return Vec3::Zero();
+    const double radius = box.diagonal().norm() / 2, step = std::exp2(std::ceil(std::log2(radius)));
+    constexpr double far = 8;  // radii
+    if (!(box.center().norm() > far * radius) || !std::isfinite(step)) return Vec3::Zero();
+    return (box.center() / step).array().round() * step;
+}
+
+void SceneBuilder::Parts::move_to(const Vec3& new_origin) {
+    origin = new_origin;
+    if (origin.isZero(0)) return;
+    for (Item& item : items) {
+        if (item.group != top_level) continue;
+        item.options.to_world.pretranslate(-origin);
+        if (item.analytic) item.analytic->translate(-origin);
+    }
+    for (Instance& instance : instances) instance.to_world.pretranslate(-origin);
+}
+
 // Emitters are sampled in world space and keep a copy of their own.
 void SceneBuilder::Parts::choose_instanced_meshes() {
     const auto may_share = [](const Item& item) {
@@ -65,6 +106,7 @@ void SceneBuilder::Parts::make_shapes() {
             item.shape = std::move(mesh_shape);
         }
         Shape& shape = *item.shape;
+        shape.origin = origin;
         shape.id = options.id;
         shape.bsdf = options.bsdf;
         shape.flip_normals = options.flip_normals;
@@ -173,14 +215,17 @@ void SceneBuilder::set_selection_probabilities(Scene& scene, std::span<const std
 std::unique_ptr<Scene> SceneBuilder::build() {
     Parts& parts = *parts_;
     if (!parts.sensor) throw std::invalid_argument("the scene has no sensor");
+    parts.move_to(parts.choose_origin());
     parts.make_shapes();
 
     std::unique_ptr<Scene> scene(new Scene);
+    scene->origin_ = parts.origin;
+    scene->moved_ = !parts.origin.isZero(0);
     scene->embree_ = std::make_unique<EmbreeScene>(parts.robust);
     parts.fill_hierarchy(*scene->embree_);
     const auto [lower, upper] = scene->embree_->bounds();
     const bool empty = !(lower.array() <= upper.array()).all();
-    scene->center_ = empty ? Vec3(0, 0, 0) : Vec3((lower + upper) / 2);
+    scene->center_ = empty ? Vec3(0, 0, 0) : Vec3(parts.origin + (lower + upper) / 2);
     scene->radius_ = empty ? 1 : (upper - lower).norm() / 2;
 
     std::vector<std::shared_ptr<Emitter>> emitters;

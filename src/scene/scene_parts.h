@@ -26,6 +26,7 @@ struct SceneBuilder::Parts {
         Affine to_world;
     };
 
+    Vec3 origin{0, 0, 0};
     std::vector<Item> items;
     std::vector<std::string> groups;  // ids
     int current_group = top_level;
@@ -42,6 +43,8 @@ struct SceneBuilder::Parts {
     std::size_t textures = 0, texture_bytes = 0;
 
     // build(), step by step
+    Vec3 choose_origin() const;
+    void move_to(const Vec3& origin);
     void choose_instanced_meshes();
     void make_shapes();
     void fill_hierarchy(EmbreeScene& embree) const;

@@ -46,6 +46,9 @@ struct ShapeHit {
     const InstanceTransform* instance = nullptr;  // of the instance the shape was seen through, if any
 };
 
+// What adding an origin to coordinates relative to it, and subtracting it again, may move a point by.
+inline float origin_rounding(const Vec3& origin) { return static_cast<float>(0x1p-51 * origin.lpNorm<1>()); }
+
 class Shape {
   public:
     virtual ~Shape() = default;
@@ -58,6 +61,7 @@ class Shape {
     virtual double area() const = 0;
     virtual ShapeSample sample(double u_primitive, const Vec2& u) const = 0;  // pdf 1 / area()
 
+    Vec3 origin{0, 0, 0};  // of the scene: fill and sample work in coordinates relative to it
     std::string id;        // of the scene file, may be empty
     BsdfPtr bsdf;
     std::shared_ptr<Emitter> emitter;  // area emitter or null

@@ -81,7 +81,7 @@ TEST(RayOffsets, RaysThatLeaveAConvexShapeDoNotComeBack) {
     }
 }
 
-TEST(RayOffsets, DISABLED_NothingEscapesFromAClosedBox) {
+TEST(RayOffsets, NothingEscapesFromAClosedBox) {
     constexpr int rays = 200000;
     for (const Placement& place : placements()) {
         SceneBuilder builder;

@@ -17,6 +17,9 @@ class AnalyticShape : public Shape {
     ShapeSample sample(double u_primitive, const Vec2& u) const override;
     double area() const override { return area_; }
 
+    // Moves the shape by a vector, before it is used.
+    void translate(const Vec3& by) { set_transform(Eigen::Translation3d(by) * to_world_, area_); }
+
     // The box around the shape, of its own space (the group's if it belongs to one).
     std::pair<Vec3, Vec3> bounds() const;
 
