@@ -62,3 +62,24 @@ function(keyhole_library name)
   target_compile_features(keyhole_${name} ${scope} cxx_std_20)
   target_link_libraries(keyhole_${name} ${scope} ${ARGN})
 endfunction()
+
+# Writes a source file that holds the text of every file of mixes/.
+function(keyhole_embed_mixes source)
+  file(GLOB mixes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/mixes/*.toml)
+  set(entries)
+  foreach(mix IN LISTS mixes)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${mix})
+    file(READ ${PROJECT_SOURCE_DIR}/${mix} text)
+    string(APPEND entries "        {\"${mix}\", R\"mix(${text})mix\"},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT
+"// Made from mixes/ by CMake.
+#include \"strategies/builtin_mix_texts.h\"
+
+const std::vector<keyhole::BuiltinMixText>& keyhole::builtin_mix_texts() {
+    static const std::vector<BuiltinMixText> texts = {
+@entries@    };
+    return texts;
+}
+")
+endfunction()

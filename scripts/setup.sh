@@ -19,6 +19,7 @@ zlib1g-dev|zlib|zlib.h
 libfmt-dev|fmt|fmt/format.h
 nlohmann-json3-dev|nlohmann JSON|nlohmann/json.hpp
 libcli11-dev|CLI11|CLI/CLI.hpp
+libtomlplusplus-dev|toml++ 3|toml++/toml.h
 librandom123-dev|Random123|Random123/philox.h
 libboost-dev|Boost (math, for the tests)|boost/math/special_functions/gamma.hpp
 libgtest-dev|GoogleTest|gtest/gtest.h

@@ -5,14 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
-#include "app/options.h"
+#include "app/mix_options.h"
 #include "render/throughput.h"
 
 namespace keyhole {
 namespace {
 
 constexpr const char* footer = R"(
-Runs MMLT in slices and prints, as mean +- standard error over the slices:
+Runs the chains in slices and prints, as mean +- standard error over the slices:
   mutations per CPU-second and per second, for 1 thread and for --threads;
   the replay ratio: the time that Embree alone needs for the rays of a slice,
   cast again in the same order by the same threads, over the slice's time.
@@ -22,7 +22,7 @@ Example: keyhole bench scenes/cornell-box.xml --size 256x256 --max-length 9)";
 
 struct BenchOptions {
     SceneOptions scene;
-    RenderSettings settings;
+    MixOptions mix;
     double seconds = 5;
     int threads = 2;
     bool json = false;
@@ -49,18 +49,21 @@ std::string millions(const RunningMean& m) {
 void print(const Throughput& t) {
     fmt::print("{} thread{}: {} million mutations per CPU-second, {} per second\n", t.threads, t.threads > 1 ? "s" : "",
                millions(t.mutations_per_cpu_second), millions(t.mutations_per_second));
-    fmt::print("  {:.2f} rays per mutation; Embree alone casts {} million of them per CPU-second\n", t.rays_per_mutation,
-               millions(t.replayed_rays_per_cpu_second));
+    fmt::print("  {:.2f} rays per mutation; Embree alone casts {} million of them per CPU-second\n",
+               t.rays_per_mutation, millions(t.replayed_rays_per_cpu_second));
     fmt::print("  replay ratio {:.3f} +- {:.3f}; acceptance {:.3f}\n", t.replay_ratio.mean(),
                t.replay_ratio.standard_error(), t.mean_acceptance);
 }
 
 int run(const BenchOptions& options) {
     const LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
+    RenderSettings settings;
+    settings.mutations_per_pixel = 1;  // the slices decide how long it runs
+    settings.mix = options.mix.apply(settings.mix);
     std::vector<Throughput> results;
-    results.push_back(measure_throughput(*loaded.scene, options.settings, 1, options.seconds));
+    results.push_back(measure_throughput(*loaded.scene, settings, 1, options.seconds));
     if (options.threads > 1)
-        results.push_back(measure_throughput(*loaded.scene, options.settings, options.threads, options.seconds));
+        results.push_back(measure_throughput(*loaded.scene, settings, options.threads, options.seconds));
     const double speed_up = results.back().mutations_per_second.mean() / results.front().mutations_per_second.mean();
     if (options.json) {
         nlohmann::json json = {{"scene", options.scene.filename}, {"results", nlohmann::json::array()}};
@@ -78,18 +81,16 @@ int run(const BenchOptions& options) {
 
 void add_bench_command(CLI::App& keyhole, Runner& runner) {
     auto options = std::make_shared<BenchOptions>();
-    options->settings.mutations_per_pixel = 1;  // the slices decide how long it runs
-    options->settings.min_length = 2;
-    CLI::App& command = *keyhole.add_subcommand("bench", "Measure how fast the chains run and how much of it is Embree");
+    options->mix.settings.push_back({"lengths.min", "2", ""});  // unless the command line says another
+    CLI::App& command =
+        *keyhole.add_subcommand("bench", "Measure how fast the chains run and how much of it is Embree");
     add_scene_options(command, options->scene);
     add_real(command, "--seconds", options->seconds, 0.1, 3600, "Time for each number of threads");
     add_integer(command, "--threads", options->threads, 1, 1024, "Compare this many threads with one");
-    add_integer(command, "--min-length", options->settings.min_length, 1, 256, "Fewest edges of a path");
-    add_integer(command, "--max-length", options->settings.max_length, 1, 256,
-                "Most edges of a path; default: what the scene says, else 12");
-    add_real(command, "--large-step", options->settings.large_step_probability, 0, 1, "Probability of a large step", true);
-    add_real(command, "--technique-change", options->settings.technique_change_probability, 0, 1,
-             "Probability of a technique change");
+    add_mix_key(command, options->mix, "--min-length", "lengths.min", "Fewest edges of a path [default: 2]");
+    add_mix_key(command, options->mix, "--max-length", "lengths.max",
+                "Most edges of a path [default: what the scene says, else 12]");
+    add_mix_options(command, options->mix);
     command.add_flag("--json", options->json, "Print the figures as JSON");
     command.footer(footer);
     command.callback([options, &runner] { runner = [options] { return run(*options); }; });

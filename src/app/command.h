@@ -21,5 +21,6 @@ void add_render_command(CLI::App& keyhole, Runner& runner);
 void add_diff_command(CLI::App& keyhole, Runner& runner);
 void add_info_command(CLI::App& keyhole, Runner& runner);
 void add_bench_command(CLI::App& keyhole, Runner& runner);
+void add_mixes_command(CLI::App& keyhole, Runner& runner);
 
 }  // namespace keyhole

@@ -53,7 +53,7 @@ Json info_json(const InfoOptions& options, const LoadedScene& loaded) {
     const Scene& scene = *loaded.scene;
     const SceneStatistics& s = scene.statistics();
     const FilmSettings& film = scene.film();
-    Json json = {{"file", options.scene.filename}, {"hash", fmt::format("{:016x}", scene.content_hash())}};
+    Json json = {{"file", options.scene.filename}, {"hash", scene_hash(scene)}};
     json["shapes"] = {{"shapes", s.shapes},
                       {"instances", s.instances},
                       {"triangles", s.triangles},
@@ -97,7 +97,7 @@ void print_info(const InfoOptions& options, const LoadedScene& loaded) {
     const Scene& scene = *loaded.scene;
     const SceneStatistics& s = scene.statistics();
     const FilmSettings& film = scene.film();
-    fmt::print("scene       {} (hash {:016x})\n", options.scene.filename, scene.content_hash());
+    fmt::print("scene       {} (hash {})\n", options.scene.filename, scene_hash(scene));
     print_contents(scene);
     fmt::print("sensor      {}, film {}x{}, window {}x{} at {},{}, {} filter of radius {:g}\n", scene.sensor().name(),
                film.width, film.height, film.crop_width, film.crop_height, film.crop_x, film.crop_y, film.filter.name(),

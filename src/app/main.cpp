@@ -33,27 +33,31 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-std::vector<std::string> command_names(const CLI::App& keyhole) {
+std::vector<std::string> command_names(const CLI::App& parent) {
     std::vector<std::string> names;
-    for (const CLI::App* command : keyhole.get_subcommands({})) names.push_back(command->get_name());
+    for (const CLI::App* command : parent.get_subcommands({})) names.push_back(command->get_name());
     return names;
 }
 
 // What is wrong with the command line, and what would have been valid.
 std::string explain(const CLI::App& keyhole, const CLI::ParseError& error) {
-    const auto chosen = keyhole.get_subcommands();
-    const CLI::App& command = chosen.empty() ? keyhole : *chosen.front();
+    const CLI::App* chosen = &keyhole;
+    std::string name_of_chosen = "keyhole";
+    while (!chosen->get_subcommands().empty()) {
+        chosen = chosen->get_subcommands().front();
+        name_of_chosen += " " + chosen->get_name();
+    }
+    const CLI::App& command = *chosen;
     const std::vector<std::string> extras = keyhole.remaining(true);
-    const std::string hint =
-        fmt::format("\n'{} --help' explains the options", chosen.empty() ? "keyhole" : "keyhole " + command.get_name());
+    const std::string hint = fmt::format("\n'{} --help' explains the options", name_of_chosen);
     if (extras.empty()) return error.what() + hint;
     const std::string& extra = extras.front();
     if (extra.starts_with("-")) {
         const std::string name = extra.substr(0, extra.find('='));
         return fmt::format("unknown option '{}'; {}", name, valid_names(name, option_names(command))) + hint;
     }
-    if (chosen.empty())
-        return fmt::format("unknown command '{}'; {}", extra, valid_names(extra, command_names(keyhole))) + hint;
+    if (const std::vector<std::string> names = command_names(command); !names.empty())
+        return fmt::format("unknown command '{}'; {}", extra, valid_names(extra, names)) + hint;
     return fmt::format("one argument too many: '{}'", extra) + hint;
 }
 
@@ -67,6 +71,7 @@ int run(int argc, char** argv) {
     add_diff_command(keyhole, runner);
     add_info_command(keyhole, runner);
     add_bench_command(keyhole, runner);
+    add_mixes_command(keyhole, runner);
     try {
         keyhole.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -10,6 +10,7 @@
 #include "app/outputs.h"
 #include "app/render_options.h"
 #include "app/report.h"
+#include "app/version.h"
 #include "base/units.h"
 
 namespace keyhole {
@@ -48,7 +49,10 @@ void print_summary(const RenderOptions& options, const Json& report, const Rende
     fmt::print("{} in {}: {:.6g} {} per pixel, {} {}/s{}\n", s.interrupted ? "interrupted" : "rendered",
                format_duration(s.seconds_bootstrap + s.seconds_render), numbers.at("mutations_per_pixel").get<double>(),
                unit, format_count(numbers.at("mutations_per_second").get<double>()), unit, acceptance);
-    fmt::print("mean luminance {:.6g}, standard error {:.2g}\n", s.b, s.b_standard_error);
+    const bool luminance =
+        options.settings.integrator != Integrator::mmlt || options.settings.mix.target == TargetFunction::luminance;
+    fmt::print("mean {} {:.6g}, standard error {:.2g}\n", luminance ? "luminance" : "of the paths' largest channel",
+               s.b, s.b_standard_error);
     if (!options.verbose) return;
     fmt::print("{} rays/s, {} threads, {} CPU, peak memory {}\n",
                format_count(numbers.at("rays_per_second").get<double>()), s.threads, format_duration(s.cpu_seconds),
@@ -77,20 +81,33 @@ RenderCallbacks make_callbacks(const Outputs& outputs, const Json& run, const In
     return callbacks;
 }
 
+// Why the image cannot be expected to be that of --like, bit for bit.
+std::vector<std::string> differences(const RenderOptions& options, const Scene& scene) {
+    std::vector<std::string> warnings;
+    if (!options.stored) return warnings;
+    if (scene_hash(scene) != options.stored->scene_hash)
+        warnings.push_back("the scene is not the one that '" + options.like + "' was made of");
+    if (version() != options.stored->version)
+        warnings.push_back(
+            fmt::format("'{}' was made by version {}, this is {}", options.like, options.stored->version, version()));
+    return warnings;
+}
+
 int run_render(const RenderOptions& options) {
     std::unique_ptr<tbb::global_control> threads;
     if (options.settings.threads > 0)
         threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                         static_cast<std::size_t>(options.settings.threads));
     const Outputs outputs(options.outputs, options.scene.filename, options.exposure);
-    const LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
-    ProgressLine line(options.verbosity(), work_unit(options.settings.integrator));
+    LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
+    for (std::string& warning : differences(options, *loaded.scene)) loaded.warnings.push_back(std::move(warning));
+    const RenderSettings settings = resolve(*loaded.scene, options.settings);
+    ProgressLine line(options.verbosity(), work_unit(settings.integrator));
     print_scene(options, loaded, line);
 
-    Json report = describe_run(options.scene, loaded, options.settings);
+    Json report = describe_run(options.scene, loaded, settings);
     const InterruptGuard interrupt(!options.quiet);
-    const RenderResult result =
-        render(*loaded.scene, options.settings, make_callbacks(outputs, report, interrupt, line));
+    const RenderResult result = render(*loaded.scene, settings, make_callbacks(outputs, report, interrupt, line));
     line.clear();
     const RenderStatistics& statistics = result.statistics;
     std::vector<std::string> warnings = loaded.warnings;
@@ -102,7 +119,7 @@ int run_render(const RenderOptions& options) {
         line.warn("interrupted before the first pass; there is no image to write");
         return exit_signal + interrupt.signal();
     }
-    add_statistics(report, options.settings, *loaded.scene, statistics);
+    add_statistics(report, settings, *loaded.scene, statistics);
     report["warnings"] = warnings;
     // Files first: whatever happens to the terminal, they are safe.
     const std::vector<std::string> failures = outputs.write(result.image, report);

@@ -11,12 +11,11 @@ namespace keyhole {
 namespace {
 
 constexpr double default_mutations_per_pixel = 64;
-constexpr int longest_path = 256;  // of render()
 
 constexpr const char* length_group = "Length of the run";
 constexpr const char* path_group = "Paths";
 constexpr const char* output_group = "Output";
-constexpr const char* mmlt_group = "Markov chains (with --integrator mmlt only)";
+constexpr const char* chain_group = "Markov chains (with --integrator mmlt only)";
 
 constexpr const char* examples = R"(Examples:
   keyhole render scenes/cornell-box.xml
@@ -27,6 +26,11 @@ constexpr const char* examples = R"(Examples:
       A small window of a large picture, a thousand mutations for each of its pixels
   keyhole render room.xml -o ref.exr --integrator bdpt --samples-per-pixel 4096
       A picture without Markov chains, to compare with
+
+  keyhole render room.xml --mix mmlt-gaussian --set small-step.sigma=0.02
+      Another mix of strategies, and one of its parameters (see keyhole mixes)
+  keyhole render --like room.exr -o again.exr
+      The same picture again, with the mutations that room.exr says it took
 
 Ctrl-C (also SIGTERM, SIGHUP) finishes the current pass and writes the image so
 far; the second quits at once. Files appear under their names only when they are
@@ -54,7 +58,7 @@ void add_output_options(CLI::App& command, RenderOptions& options) {
     verbose->group(output_group)->excludes(quiet);
 }
 
-void add_length_options(CLI::App& command, RenderSettings& settings) {
+void add_length_options(CLI::App& command, RenderSettings& settings, MixOptions& mix) {
     const auto time = [&settings](const std::string& text) {
         settings.seconds = parse_duration(text);
         if (settings.seconds <= 0) throw InputError({}, "'" + text + "' is not above zero");
@@ -66,60 +70,56 @@ void add_length_options(CLI::App& command, RenderSettings& settings) {
              "repeated bit for bit [default: 64]",
              true)
         ->group(length_group);
-    const auto seed = [&settings](const std::string& text) { settings.seed = parse_unsigned(text); };
-    add_parsed(command, "--seed", "INTEGER", seed, "Another seed gives another independent image [default: 0]")
+    add_mix_key(command, mix, "--seed", "seed", "Another seed gives another independent image [default: 0]")
         ->group(length_group);
     add_integer(command, "--threads", settings.threads, 0, 4096, "Number of threads; 0: all [default: 0]")
         ->group(length_group);
 }
 
-void add_path_options(CLI::App& command, RenderSettings& settings) {
-    const auto integrator = [&settings](std::size_t i) {
-        settings.integrator = std::array{Integrator::mmlt, Integrator::bdpt, Integrator::path}[i];
+void add_path_options(CLI::App& command, RenderOptions& options) {
+    const auto integrator = [&options](std::size_t i) {
+        options.settings.integrator = std::array{Integrator::mmlt, Integrator::bdpt, Integrator::path}[i];
     };
     add_choice(command, "-i,--integrator", {"mmlt", "bdpt", "path"}, integrator,
                "Multiplexed Metropolis light transport, bidirectional path tracing, or path tracing [default: mmlt]")
         ->group(path_group);
-    add_integer(command, "--max-length", settings.max_length, 1, longest_path,
+    add_mix_key(command, options.mix, "--max-length", "lengths.max",
                 "Most edges of a path: 1 sees lights, 2 adds direct light [default: the scene file's, else 12]")
         ->group(path_group);
-    add_integer(command, "--min-length", settings.min_length, 1, longest_path, "Fewest edges of a path [default: 1]")
+    add_mix_key(command, options.mix, "--min-length", "lengths.min", "Fewest edges of a path [default: 1]")
         ->group(path_group);
 }
 
-void add_mmlt_options(CLI::App& command, RenderSettings& settings) {
-    const auto kernel = [&settings](std::size_t i) {
-        settings.kernel = i == 0 ? StepKernel::kelemen : StepKernel::gaussian;
-    };
-    const std::array<CLI::Option*, 8> options = {
-        add_integer(command, "--chains", settings.chains, 0, 1 << 30,
-                    "Number of chains; 0: chosen for the run [default: 0]"),
-        add_integer(command, "--bootstrap", settings.bootstrap_samples, std::int64_t{0}, std::int64_t{1} << 40,
-                    "Independent samples to start the chains from; 0: chosen for the run [default: 0]"),
-        add_real(command, "--large-step", settings.large_step_probability, 0, 1,
-                 "Probability of an independent proposal [default: 0.1]", true),
-        add_real(command, "--technique-change", settings.technique_change_probability, 0, 1,
-                 "Probability of a change of technique [default: 0.05]"),
-        add_choice(command, "--kernel", {"kelemen", "gaussian"}, kernel, "Small steps [default: kelemen]"),
-        add_real(command, "--kelemen-s1", settings.kelemen_s1, 0, 1, "Smallest step of kelemen [default: 1/1024]",
-                 true),
-        add_real(command, "--kelemen-s2", settings.kelemen_s2, 0, 1, "Largest step of kelemen [default: 1/64]", true),
-        add_real(command, "--sigma", settings.gaussian_sigma, 0, 1, "Standard deviation of gaussian [default: 0.01]",
-                 true)};
-    for (CLI::Option* option : options) option->group(mmlt_group);
+void add_chain_options(CLI::App& command, MixOptions& mix) {
+    std::vector<CLI::Option*> options = add_mix_options(command, mix);
+    options.push_back(add_mix_key(command, mix, "--chains", "chains.count", "Number of chains, or auto"));
+    options.push_back(add_mix_key(command, mix, "--bootstrap", "bootstrap.samples",
+                                  "Independent samples to start the chains from, or auto"));
+    for (CLI::Option* option : options) option->group(chain_group);
 }
 
 // Options that were given but cannot change anything.
-void refuse_without_effect(const CLI::App& command, const RenderSettings& settings) {
-    for (const CLI::Option* option : command.get_options()) {
-        if (option->count() == 0) continue;
-        const std::string name = option->get_name();
-        if (settings.integrator != Integrator::mmlt && option->get_group() == mmlt_group)
-            throw InputError({}, name + " has no effect here; it needs --integrator mmlt");
-        if (settings.kernel == StepKernel::kelemen && name == "--sigma")
-            throw InputError({}, "--sigma has no effect here; it needs --kernel gaussian");
-        if (settings.kernel == StepKernel::gaussian && name.starts_with("--kelemen-"))
-            throw InputError({}, name + " has no effect here; it needs --kernel kelemen");
+void refuse_without_effect(const CLI::App& command, const RenderOptions& options) {
+    if (options.settings.integrator == Integrator::mmlt) return;
+    const std::string why = " has no effect here; it needs --integrator mmlt";
+    for (const Setting& s : options.mix.settings)
+        if (s.key != "seed" && s.key != "lengths.min" && s.key != "lengths.max")
+            throw InputError({}, (s.origin == "--set" ? "--set " + s.key : s.origin) + why);
+    if (command.count("--mix") > 0) throw InputError({}, "--mix" + why);
+}
+
+// Starts from the run of --like in place of the defaults.
+void take_stored_run(const CLI::App& command, RenderOptions& options) {
+    options.stored = read_stored_run(options.like);
+    options.scene = merge(options.stored->scene, options.scene);
+    const RenderSettings given = options.settings;
+    RenderSettings& settings = options.settings = options.stored->settings;
+    if (command.count("--integrator") > 0) settings.integrator = given.integrator;
+    settings.threads = given.threads;
+    settings.preview_every = given.preview_every;
+    if (given.seconds > 0 || given.mutations_per_pixel > 0) {
+        settings.seconds = given.seconds;
+        settings.mutations_per_pixel = given.mutations_per_pixel;
     }
 }
 
@@ -127,28 +127,33 @@ void refuse_without_effect(const CLI::App& command, const RenderSettings& settin
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
     add_scene_options(command, options.scene);
+    command.get_option("SCENE")->required(false);  // with --like
+    const auto like = [&options](const std::string& text) { options.like = text; };
+    add_parsed(
+        command, "--like", "FILE", like,
+        "Make the image of this .exr, .png or .json again, with the scene, mix, seed and number of mutations that "
+        "it says; other options change that");
     add_output_options(command, options);
-    add_length_options(command, options.settings);
-    add_path_options(command, options.settings);
-    add_mmlt_options(command, options.settings);
+    add_length_options(command, options.settings, options.mix);
+    add_path_options(command, options);
+    add_chain_options(command, options.mix);
     command.footer(examples);
 }
 
 void complete_render_options(const CLI::App& command, RenderOptions& options) {
     RenderSettings& settings = options.settings;
-    refuse_without_effect(command, settings);
     if (settings.seconds > 0 && settings.mutations_per_pixel > 0)
         throw InputError({}, "--time and --mutations-per-pixel exclude each other");
-    if (settings.seconds == 0 && settings.mutations_per_pixel == 0)
+    if (!options.like.empty()) {
+        if (options.outputs.empty()) throw InputError({}, "--like needs -o, so that no image is replaced unasked");
+        take_stored_run(command, options);
+    }
+    if (options.scene.filename.empty()) throw InputError({}, "SCENE is required (or --like)");
+    refuse_without_effect(command, options);
+    settings.mix = options.mix.apply(settings.mix);
+    const bool mix_says = settings.integrator == Integrator::mmlt && settings.mix.chain_length > 0;
+    if (settings.seconds == 0 && settings.mutations_per_pixel == 0 && !mix_says)
         settings.mutations_per_pixel = default_mutations_per_pixel;
-    if (settings.max_length > 0 && settings.max_length < settings.min_length)
-        throw InputError(
-            {}, fmt::format("--max-length {} is below --min-length {}", settings.max_length, settings.min_length));
-    if (settings.kelemen_s1 > settings.kelemen_s2)
-        throw InputError(
-            {}, fmt::format("--kelemen-s1 {} is above --kelemen-s2 {}", settings.kelemen_s1, settings.kelemen_s2));
-    if (settings.large_step_probability + settings.technique_change_probability > 1)
-        throw InputError({}, "--large-step and --technique-change sum to more than 1");
 }
 
 }  // namespace keyhole

@@ -4,48 +4,39 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <filesystem>
 
 #include "app/version.h"
+#include "base/error.h"
 
 namespace keyhole {
 namespace {
 
 Json scene_json(const SceneOptions& options, const LoadedScene& loaded) {
+    const ReaderOptions& r = options.reader;
     return {{"file", options.filename},
-            {"hash", fmt::format("{:016x}", loaded.scene->content_hash())},
-            {"defines", options.reader.defines},
-            {"lenient", options.reader.lenient},
+            {"path", std::filesystem::absolute(options.filename).string()},
+            {"hash", scene_hash(*loaded.scene)},
+            {"size", r.width > 0 ? Json{r.width, r.height} : Json()},
+            {"crop", r.override_crop ? Json{r.crop_x, r.crop_y, r.crop_width, r.crop_height} : Json()},
+            {"defines", r.defines},
+            {"lenient", r.lenient},
             {"triangles", loaded.scene->statistics().triangles},
             {"seconds_reading", loaded.seconds_reading},
             {"seconds_building", loaded.seconds_building},
             {"unused", loaded.unused}};
 }
 
-Json mmlt_json(const RenderSettings& s) {
-    Json json = {{"chains", s.chains},
-                 {"bootstrap_samples", s.bootstrap_samples},
-                 {"large_step_probability", s.large_step_probability},
-                 {"technique_change_probability", s.technique_change_probability},
-                 {"kernel", kernel_name(s.kernel)}};
-    if (s.kernel == StepKernel::gaussian) {
-        json["gaussian_sigma"] = s.gaussian_sigma;
-    } else {
-        json["kelemen_s1"] = s.kelemen_s1;
-        json["kelemen_s2"] = s.kelemen_s2;
-    }
-    return json;
-}
-
-// As asked for; 0 where the default was left.
+// As used, with every default filled in; the mix as the text of a mix file.
 Json settings_json(const RenderSettings& s) {
     Json json = {{"integrator", integrator_name(s.integrator)},
-                 {"seed", s.seed},
+                 {"seed", s.mix.seed},
                  {"seconds", s.seconds},
                  {"mutations_per_pixel", s.mutations_per_pixel},
-                 {"min_length", s.min_length},
-                 {"max_length", s.max_length},
+                 {"min_length", s.mix.lengths.min},
+                 {"max_length", s.mix.lengths.max},
                  {"threads", s.threads}};
-    if (s.integrator == Integrator::mmlt) json.update(mmlt_json(s));
+    if (s.integrator == Integrator::mmlt) json["mix"] = write_mix(s.mix);
     return json;
 }
 
@@ -57,6 +48,10 @@ Json strategy_json(const StrategyStatistics& s) {
             {"failures", s.failures}};
 }
 
+Json length_json(const LengthStatistics& s) {
+    return {{"length", s.length}, {"chains", s.chains}, {"b", s.b}, {"b_standard_error", s.b_standard_error}};
+}
+
 double per_second(std::uint64_t count, double seconds) {
     return seconds > 0 ? static_cast<double>(count) / seconds : 0;
 }
@@ -65,6 +60,8 @@ double per_second(std::uint64_t count, double seconds) {
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
 }  // namespace
+
+std::string scene_hash(const Scene& scene) { return fmt::format("{:016x}", scene.content_hash()); }
 
 Json film_json(const FilmSettings& film) {
     return {{"width", film.width},
@@ -86,7 +83,11 @@ const char* integrator_name(Integrator integrator) {
     return "mmlt";
 }
 
-const char* kernel_name(StepKernel kernel) { return kernel == StepKernel::kelemen ? "kelemen" : "gaussian"; }
+Integrator integrator_of(const std::string& name) {
+    for (const Integrator integrator : {Integrator::path, Integrator::bdpt, Integrator::mmlt})
+        if (name == integrator_name(integrator)) return integrator;
+    throw InputError({}, "unknown integrator '" + name + "'; " + valid_names(name, {"path", "bdpt", "mmlt"}));
+}
 
 const char* work_unit(Integrator integrator) { return integrator == Integrator::mmlt ? "mutations" : "samples"; }
 
@@ -114,6 +115,7 @@ void add_statistics(Json& report, const RenderSettings& settings, const Scene& s
     Json json = {{"complete", !s.interrupted},
                  {"work_unit", work_unit(settings.integrator)},
                  {"mutations", s.mutations},
+                 {"rounds", s.rounds},
                  {"mutations_per_pixel", static_cast<double>(s.mutations) / pixels},
                  {"mutations_per_second", per_second(s.mutations, s.seconds_render)},
                  {"rays", s.rays},
@@ -131,6 +133,8 @@ void add_statistics(Json& report, const RenderSettings& settings, const Scene& s
     json["peak_memory_bytes"] = s.peak_memory_bytes;
     json["strategies"] = Json::array();
     for (const StrategyStatistics& strategy : s.strategies) json["strategies"].push_back(strategy_json(strategy));
+    if (!s.lengths.empty()) json["lengths"] = Json::array();
+    for (const LengthStatistics& length : s.lengths) json["lengths"].push_back(length_json(length));
     report["finished"] = utc_now();
     report["statistics"] = std::move(json);
 }
@@ -145,6 +149,7 @@ std::map<std::string, std::string> image_metadata(const Json& report) {
     };
     for (const char* name : {"integrator", "seed"})
         metadata[std::string("keyhole:") + name] = text_of(report.at("settings").at(name));
+    if (report.at("settings").contains("mix")) metadata["keyhole:mix"] = text_of(report["settings"]["mix"]);
     if (!report.contains("statistics")) return metadata;
     for (const char* name : {"complete", "mutations", "mutations_per_pixel", "max_length", "chains", "b",
                              "b_standard_error", "acceptance", "seconds_render", "non_finite"})

@@ -14,12 +14,14 @@ namespace keyhole {
 
 using Json = nlohmann::ordered_json;
 
-// Everything known before the first sample: versions, command line, scene, film, settings.
+// Everything known before the first sample: versions, command line, scene, film, settings (resolved).
 Json describe_run(const SceneOptions& options, const LoadedScene& loaded, const RenderSettings& settings);
 
 // Adds what the run has found to `report`.
 void add_statistics(Json& report, const RenderSettings& settings, const Scene& scene,
                     const RenderStatistics& statistics);
+
+std::string scene_hash(const Scene& scene);  // 16 hexadecimal digits
 
 Json film_json(const FilmSettings& film);
 
@@ -28,8 +30,8 @@ Json film_json(const FilmSettings& film);
 std::map<std::string, std::string> image_metadata(const Json& report);
 
 const char* integrator_name(Integrator integrator);
-const char* kernel_name(StepKernel kernel);
-const char* work_unit(Integrator integrator);  // "mutations" or "samples"
+Integrator integrator_of(const std::string& name);  // throws InputError for other names
+const char* work_unit(Integrator integrator);       // "mutations" or "samples"
 
 // Over all strategies; negative where nothing was proposed.
 double overall_acceptance(const RenderStatistics& statistics);

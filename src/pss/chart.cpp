@@ -4,9 +4,10 @@
 
 namespace keyhole {
 
-Chart::Chart(const Scene& scene, const CoordinateLayout& layout)
+Chart::Chart(const Scene& scene, const CoordinateLayout& layout, TargetFunction target)
     : tracer_(scene),
       layout_(&layout),
+      target_(target),
       window_(scene.film()),
       eye_(layout.max_length() + 1),
       light_(layout.max_length() + 1) {}
@@ -55,7 +56,10 @@ Evaluation Chart::evaluate(const PrimarySample& u) {
     junction_ = c.junction;
     result.raster = t_ == 1 ? c.raster : raster_;
     result.contribution = c.throughput * mis_weight(eye(), light(), c.junction, Techniques::all);
-    if (!std::isfinite(result.contribution.sum())) result.failure = PathFailure::non_finite;
+    if (std::isfinite(result.contribution.sum()))
+        result.target = scalar(target_, result.contribution);
+    else
+        result.failure = PathFailure::non_finite;
     return result;
 }
 

@@ -23,14 +23,15 @@ struct PrimarySample {
 // What the chain needs of T_t(u).
 struct Evaluation {
     PathFailure failure = PathFailure::none;
-    Spectrum contribution{0, 0, 0};  // w_t f / p_t: f* of it is C(x)
+    Spectrum contribution{0, 0, 0};  // w_t f / p_t
+    double target = 0;               // f* of it, which is C(x); 0 after a failure
     Vec2 raster{0, 0};
 };
 
 // Maps coordinates to paths. Owns the vertices, so one per thread.
 class Chart {
   public:
-    Chart(const Scene& scene, const CoordinateLayout& layout);
+    Chart(const Scene& scene, const CoordinateLayout& layout, TargetFunction target = TargetFunction::luminance);
 
     // Traces T_t(u). k in [1, max_length], t in [1, k+1]; t = 1 with k = 1 has zero contribution by convention.
     Evaluation evaluate(const PrimarySample& u);
@@ -51,6 +52,7 @@ class Chart {
 
     Tracer tracer_;
     const CoordinateLayout* layout_;
+    TargetFunction target_;
     RasterWindow window_;
     std::vector<Vertex> eye_, light_;
     SensorPoint sensor_point_;

@@ -1,6 +1,9 @@
 #include "render/bootstrap.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
 
 #include "base/parallel.h"
 #include "chain/bootstrap.h"
@@ -16,8 +19,8 @@ struct Worker {
     PssState state;
     LargeStep large_step;
 
-    Worker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques)
-        : chart(scene, layout), state(layout), large_step(chart, techniques) {}
+    Worker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques, const Mix& mix)
+        : chart(scene, layout, mix.target), state(layout), large_step(chart, techniques, mix.lengths.fixed) {}
 };
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<Worker>>;
@@ -41,46 +44,79 @@ void fit_techniques(Workers& workers, TechniqueDistribution& techniques, std::ui
         Worker& worker = *workers.local();
         Rng rng(seed, stream(StreamUse::energies, i));
         worker.large_step.draw(worker.state, rng);
-        found[i] = {{worker.state.u.k, worker.state.u.t}, worker.large_step.estimate(worker.state)};
+        const int k = worker.state.u.k, t = worker.state.u.t;
+        found[i] = {{k, t}, worker.state.target / techniques.probability(k, t)};
     });
     std::vector<double> energies(techniques.techniques().size(), 0.0);
     for (const Found& f : found) energies[techniques.index(f.technique.k, f.technique.t)] += f.estimate;
     techniques.fit(energies, uniform_share);
 }
 
+// The mean of the samples of each length (of all, where `lengths` holds zeros): given its length, a sample estimates b
+// of that length. Without the groups that found nothing.
+std::vector<ChainGroup> make_groups(const std::vector<double>& weights, const std::vector<std::uint16_t>& lengths,
+                                    const PathLengths& range) {
+    std::vector<ChainGroup> groups(range.fixed ? range.max + 1 : 1);
+    for (std::size_t i = 0; i < groups.size(); ++i) groups[i].length = static_cast<int>(i);
+    for (std::size_t i = 0; i < weights.size(); ++i) groups[lengths[i]].b.add(weights[i]);
+    std::erase_if(groups, [](const ChainGroup& group) { return !(group.b.mean() > 0); });
+    return groups;
+}
+
+// How many of the chains each group gets: one for sure, the others in proportion to its b. Any such numbers give the
+// right image; these give splats of nearly equal weight.
+std::vector<std::size_t> share_chains(const std::vector<ChainGroup>& groups, std::size_t chains) {
+    if (chains < groups.size())
+        throw std::invalid_argument(
+            fmt::format("{} chains of fixed length are too few: paths of {} lengths carry light, and "
+                        "each needs a chain",
+                        chains, groups.size()));
+    std::vector<std::size_t> counts(groups.size(), 1);
+    if (groups.empty()) return counts;
+    std::vector<double> shares;
+    for (const ChainGroup& group : groups) shares.push_back(group.b.mean());
+    for (const std::size_t g : resample(shares, chains - groups.size(), 0.5)) ++counts[g];
+    return counts;
+}
+
 }  // namespace
 
 Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, TechniqueDistribution& techniques,
-                        std::uint64_t samples, std::size_t chains, std::uint64_t seed) {
+                        const Mix& mix) {
+    const auto samples = static_cast<std::uint64_t>(mix.bootstrap_samples);
     Bootstrap result;
-    Workers workers([&] { return std::make_unique<Worker>(scene, layout, techniques); });
-    fit_techniques(workers, techniques, samples / 4, seed);
+    Workers workers([&] { return std::make_unique<Worker>(scene, layout, techniques, mix); });
+    fit_techniques(workers, techniques, samples / 4, mix.seed);
 
     std::vector<double> weights(samples - samples / 4);
     std::vector<std::uint8_t> finite(weights.size(), 1);
+    std::vector<std::uint16_t> lengths(weights.size());
     const auto draw = [&](Worker& worker, std::uint64_t i) {
-        Rng rng(seed, stream(StreamUse::seeds, i));
+        Rng rng(mix.seed, stream(StreamUse::seeds, i));
         return worker.large_step.draw(worker.state, rng);
     };
     for_each_sample(weights.size(), [&](std::uint64_t i) {
         Worker& worker = *workers.local();
         finite[i] = draw(worker, i) != PathFailure::non_finite;
         weights[i] = worker.large_step.estimate(worker.state);
+        lengths[i] = static_cast<std::uint16_t>(mix.lengths.fixed ? worker.state.u.k : 0);
     });
-    double sum = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        result.b.add(weights[i]);
-        result.non_finite += !finite[i];
-        sum += weights[i];
-    }
+    for (const std::uint8_t f : finite) result.non_finite += !f;
     for (const auto& worker : workers) result.rays += worker->chart.tracer().rays();
-    if (!(sum > 0)) return result;
 
-    Rng rng(seed, stream(StreamUse::resampling, 0));
+    result.groups = make_groups(weights, lengths, mix.lengths);
+    const std::vector<std::size_t> counts = share_chains(result.groups, static_cast<std::size_t>(mix.chain_count));
+    Rng rng(mix.seed, stream(StreamUse::resampling, 0));
     Worker& worker = *workers.local();
-    for (const std::size_t i : resample(weights, chains, rng.uniform())) {
-        draw(worker, i);
-        result.seeds.push_back(worker.state);
+    for (std::size_t g = 0; g < counts.size(); ++g) {
+        ChainGroup& group = result.groups[g];
+        std::vector<double> own = weights;
+        for (std::size_t i = 0; i < own.size(); ++i)
+            if (lengths[i] != group.length) own[i] = 0;
+        for (const std::size_t i : resample(own, counts[g], rng.uniform())) {
+            draw(worker, i);
+            group.seeds.push_back(worker.state);
+        }
     }
     return result;
 }

@@ -5,7 +5,7 @@
 
 #include "base/rng.h"
 #include "chain/running_mean.h"
-#include "strategies/mmlt.h"
+#include "strategies/mix.h"
 
 namespace keyhole {
 
@@ -15,15 +15,23 @@ inline std::uint64_t stream(StreamUse use, std::uint64_t index) {
     return (static_cast<std::uint64_t>(use) << 60) | index;
 }
 
+// Chains that share a target and its normalisation: all chains where lengths are free, those of one length where each
+// chain keeps its own. The image is the sum over groups of b / (mutations of the group) times the group's film.
+struct ChainGroup {
+    int length = 0;               // of its paths; 0: any
+    RunningMean b;                // integral of f* over raster area, of these paths
+    std::vector<PssState> seeds;  // one per chain, in proportion to the target
+};
+
 struct Bootstrap {
-    RunningMean b;                // integral of f* over raster area
-    std::vector<PssState> seeds;  // one per chain, in proportion to the target; empty if nothing was found
+    std::vector<ChainGroup> groups;  // those in which a path with light was found
     std::uint64_t non_finite = 0;
     std::uint64_t rays = 0;
 };
 
-// A quarter of the `samples` fits `techniques` to the energies, the rest estimates b and gives the seeds.
+// A quarter of the mix's samples fits `techniques` to the energies, the rest estimates b and gives the seeds. `mix` is
+// resolved. Throws std::invalid_argument if there are fewer chains than lengths that need one each.
 Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, TechniqueDistribution& techniques,
-                        std::uint64_t samples, std::size_t chains, std::uint64_t seed);
+                        const Mix& mix);
 
 }  // namespace keyhole

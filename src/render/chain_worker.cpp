@@ -3,42 +3,50 @@
 namespace keyhole {
 namespace {
 
-constexpr std::size_t large_step_index = 0;
-
-Mixture<PssState, Rng> make_mixture(Chart& chart, const TechniqueDistribution& techniques,
-                                    const RenderSettings& settings) {
-    using Component = Mixture<PssState, Rng>::Component;
-    const double large = settings.large_step_probability, change = settings.technique_change_probability;
-    std::vector<Component> components;
-    components.push_back({std::make_unique<LargeStep>(chart, techniques), large});
-    if (settings.kernel == StepKernel::kelemen) {
-        const KelemenKernel kernel(settings.kelemen_s1, settings.kelemen_s2);
-        components.push_back({std::make_unique<SmallStep<KelemenKernel>>(chart, kernel), 1 - large - change});
-    } else {
-        const GaussianKernel kernel(settings.gaussian_sigma);
-        components.push_back({std::make_unique<SmallStep<GaussianKernel>>(chart, kernel), 1 - large - change});
-    }
-    if (settings.max_length > 1) components.push_back({std::make_unique<TechniqueChange>(chart, techniques), change});
+Mixture<PssState, Rng> make_mixture(const std::vector<const MixStrategy*>& strategies, const StrategyContext& context) {
+    std::vector<Mixture<PssState, Rng>::Component> components;
+    for (const MixStrategy* s : strategies) components.push_back({s->info->make(context, s->parameters), s->weight});
     return Mixture<PssState, Rng>(std::move(components));
 }
 
 }  // namespace
 
+std::vector<RunningChain> start_chains(std::vector<ChainGroup>& groups, std::uint64_t seed) {
+    std::vector<RunningChain> chains;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        for (PssState& state : groups[g].seeds) {
+            const Rng rng(seed, stream(StreamUse::chain, chains.size()));
+            chains.push_back({Chain<PssState>(std::move(state)), rng, {}, g});
+        }
+        groups[g].seeds.clear();
+    }
+    return chains;
+}
+
+std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scene& scene) {
+    std::vector<const MixStrategy*> strategies;
+    for (const MixStrategy& s : mix.strategies)
+        if (s.weight > 0 && s.info->hindrance(scene, mix.lengths).empty()) strategies.push_back(&s);
+    return strategies;
+}
+
 ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                         const RenderSettings& settings)
-    : chart(scene, layout),
-      mixture(make_mixture(chart, techniques, settings)),
-      film(scene.film()),
+                         const Mix& mix, std::size_t groups)
+    : chart(scene, layout, mix.target),
+      mixture(make_mixture(applicable_strategies(mix, scene), {chart, techniques, mix.lengths})),
+      films(groups, MetropolisFilm(scene.film())),
       diagnostics(mixture.size()),
-      techniques_(techniques) {}
+      estimator_(chart, techniques, mix.lengths.fixed) {
+    for (const MixStrategy* s : applicable_strategies(mix, scene)) independent_.push_back(s->info->independent);
+}
 
 void ChainWorker::advance(RunningChain& running, std::uint64_t mutations) {
-    FilmSink sink{film};
+    FilmSink sink{films[running.group]};
     for (std::uint64_t i = 0; i < mutations; ++i) {
         const StepOutcome outcome = running.chain.step(mixture, running.rng, sink, diagnostics);
-        if (outcome.strategy != large_step_index || outcome.idle) continue;
+        if (outcome.idle || !independent_[outcome.strategy]) continue;
         const PssState& y = running.chain.proposed(outcome);
-        running.b.add(outcome.failure == Failure::none ? y.target / techniques_.probability(y.u.k, y.u.t) : 0);
+        running.b.add(outcome.failure == Failure::none ? estimator_.estimate(y) : 0);
     }
 }
 

@@ -1,11 +1,11 @@
 // What one thread runs chains with.
 #pragma once
 
-#include "chain/running_mean.h"
 #include "chain/metropolis.h"
+#include "chain/running_mean.h"
+#include "render/bootstrap.h"
 #include "render/film.h"
-#include "render/render.h"
-#include "strategies/mmlt.h"
+#include "strategies/mix.h"
 
 namespace keyhole {
 
@@ -13,8 +13,15 @@ namespace keyhole {
 struct RunningChain {
     Chain<PssState> chain;
     Rng rng;
-    RunningMean b;  // estimated by its large steps
+    RunningMean b;          // of its group, estimated by its independent proposals
+    std::size_t group = 0;  // see ChainGroup
 };
+
+// The chains of a bootstrap's groups, one after the other. Takes the seeds out of the groups.
+std::vector<RunningChain> start_chains(std::vector<ChainGroup>& groups, std::uint64_t seed);
+
+// The strategies of a mix that are used (weight above zero) and apply to the scene, in the mix's order.
+std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scene& scene);
 
 struct FilmSink {
     MetropolisFilm& film;
@@ -23,18 +30,20 @@ struct FilmSink {
 
 class ChainWorker {
   public:
+    // `mix` is resolved. One film for each of the groups.
     ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                const RenderSettings& settings);
+                const Mix& mix, std::size_t groups);
 
     void advance(RunningChain& running, std::uint64_t mutations);
 
     Chart chart;
     Mixture<PssState, Rng> mixture;
-    MetropolisFilm film;
+    std::vector<MetropolisFilm> films;  // by group
     Diagnostics diagnostics;
 
   private:
-    const TechniqueDistribution& techniques_;
+    std::vector<char> independent_;  // of each strategy: whether its proposals estimate b
+    LargeStep estimator_;
 };
 
 }  // namespace keyhole

@@ -50,6 +50,12 @@ std::vector<unsigned char> encode_8bit(const Image& image, double exposure) {
     return bytes;
 }
 
+std::unique_ptr<OIIO::ImageInput> open_image(const std::string& filename) {
+    auto input = OIIO::ImageInput::open(filename);
+    if (!input) throw InputError({filename}, "cannot read the image: " + OIIO::geterror());
+    return input;
+}
+
 [[noreturn]] void cannot_write(const std::string& filename, const std::string& why) {
     throw std::runtime_error("cannot write '" + filename + "': " + why);
 }
@@ -65,9 +71,12 @@ std::string image_format(const std::string& filename) {
                              "; valid extensions: .exr (32-bit float, linear), .png (8-bit sRGB)");
 }
 
+std::string read_metadata(const std::string& filename, const std::string& key) {
+    return std::string(open_image(filename)->spec().get_string_attribute(key));
+}
+
 Image read_image(const std::string& filename) {
-    const auto input = OIIO::ImageInput::open(filename);
-    if (!input) throw InputError({filename}, "cannot read the image: " + OIIO::geterror());
+    const auto input = open_image(filename);
     const OIIO::ImageSpec& spec = input->spec();
     const int channels = spec.nchannels;
     std::vector<float> values(static_cast<std::size_t>(spec.width) * spec.height * channels);

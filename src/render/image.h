@@ -24,6 +24,10 @@ struct Image {
 // read.
 Image read_image(const std::string& filename);
 
+// A text of the image's metadata, such as write_image stores; empty if it has none of that name. Throws InputError if
+// the image cannot be read.
+std::string read_metadata(const std::string& filename, const std::string& key);
+
 // OpenImageIO's name of the format that write_image uses for the file. Throws InputError, which lists the valid
 // extensions, for any other.
 std::string image_format(const std::string& filename);

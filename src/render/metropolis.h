@@ -5,7 +5,7 @@
 
 namespace keyhole {
 
-// settings.max_length and settings.chains are resolved already.
+// `settings` are resolved.
 RenderResult render_metropolis(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks);
 
 }  // namespace keyhole

@@ -14,7 +14,7 @@
 namespace keyhole {
 namespace {
 
-constexpr int default_max_length = 12, longest_path = 256;
+constexpr int default_max_length = 12;
 constexpr int default_chains = 1024;
 constexpr std::int64_t default_bootstrap_samples = 262144;
 
@@ -25,20 +25,32 @@ void check(bool valid, const char* message) {
 }  // namespace
 
 RenderSettings resolve(const Scene& scene, RenderSettings s) {
+    const bool chains = s.integrator == Integrator::mmlt;
     check(std::isfinite(s.seconds) && std::isfinite(s.mutations_per_pixel) && s.seconds >= 0 &&
-              s.mutations_per_pixel >= 0 && (s.seconds > 0) != (s.mutations_per_pixel > 0),
+              s.mutations_per_pixel >= 0 && (s.seconds == 0 || s.mutations_per_pixel == 0),
           "give either a time or a number of mutations (samples) per pixel, not both");
-    if (s.max_length == 0) s.max_length = scene.max_path_length() > 0 ? scene.max_path_length() : default_max_length;
-    check(s.min_length >= 1 && s.max_length >= s.min_length, "path lengths must satisfy 1 <= min <= max");
-    check(s.max_length <= longest_path, "paths of more than 256 edges are not supported");
-    if (s.chains == 0) s.chains = default_chains;
-    if (s.bootstrap_samples == 0) s.bootstrap_samples = default_bootstrap_samples;
-    check(s.chains > 0, "the number of chains must be positive");
-    check(s.bootstrap_samples >= 4, "the bootstrap needs at least 4 samples");
-    const double large = s.large_step_probability, change = s.technique_change_probability;
-    check(large > 0 && change >= 0 && large + change <= 1,
-          "the probability of a large step must be positive, and with that of a technique change at most 1");
-    check(s.kelemen_s1 > 0 && s.kelemen_s2 >= s.kelemen_s1 && s.gaussian_sigma > 0, "step sizes must be positive");
+    check(s.seconds > 0 || s.mutations_per_pixel > 0 || (chains && s.mix.chain_length > 0),
+          "neither a time nor a number of mutations (samples) per pixel is given");
+    Mix& mix = s.mix;
+    if (mix.lengths.max == 0)
+        mix.lengths.max = scene.max_path_length() > 0 ? scene.max_path_length() : default_max_length;
+    if (mix.chain_count == 0) mix.chain_count = default_chains;
+    if (mix.bootstrap_samples == 0) mix.bootstrap_samples = default_bootstrap_samples;
+    check(mix.lengths.min >= 1 && mix.lengths.max >= mix.lengths.min, "path lengths must satisfy 1 <= min <= max");
+    check(mix.lengths.max <= PathLengths::longest, "paths of more than 256 edges are not supported");
+    check(mix.chain_count > 0, "the number of chains must be positive");
+    check(mix.bootstrap_samples >= 4, "the bootstrap needs at least 4 samples");
+    if (!chains) return s;
+    Mix applicable = mix;
+    std::erase_if(applicable.strategies,
+                  [&](const MixStrategy& m) { return !m.info->hindrance(scene, mix.lengths).empty(); });
+    if (const auto wrong = contradiction(applicable)) throw std::invalid_argument(wrong->message);
+    const FilmSettings& film = scene.film();
+    const double pixels = static_cast<double>(film.crop_width) * film.crop_height;
+    if (s.seconds > 0) mix.chain_length = 0;
+    if (s.mutations_per_pixel > 0)
+        mix.chain_length =
+            static_cast<std::int64_t>(std::min(9e18, std::ceil(s.mutations_per_pixel * pixels / mix.chain_count)));
     return s;
 }
 
@@ -57,9 +69,9 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Re
     s.cpu_seconds = cpu_seconds() - cpu_before;
     s.peak_memory_bytes = peak_memory_bytes();
     s.threads = threads;
-    s.max_length = resolved.max_length;
+    s.max_length = resolved.mix.lengths.max;
     if (resolved.integrator == Integrator::mmlt) {
-        s.chains = resolved.chains;
+        s.chains = resolved.mix.chain_count;
     } else {
         double sum = 0;
         for (std::size_t i = 0; i < result.image.rgb.size(); i += 3)

@@ -10,29 +10,22 @@
 
 #include "render/image.h"
 #include "scene/scene.h"
+#include "strategies/mix_file.h"
 
 namespace keyhole {
 
 enum class Integrator { path, bdpt, mmlt };
-enum class StepKernel { kelemen, gaussian };
 
 struct RenderSettings {
     Integrator integrator = Integrator::mmlt;
-    // How long: exactly one of the two is positive. Mutations (mmlt) or samples (path, bdpt) per pixel of the crop
-    // window; a run of a given count is repeatable bit for bit with any number of threads.
+    // How long: at most one of the two is positive. Mutations (mmlt) or samples (path, bdpt) per pixel of the crop
+    // window; a run of a given count is repeatable bit for bit with any number of threads. Both 0: mutations of each
+    // chain as the mix says.
     double seconds = 0;
     double mutations_per_pixel = 0;
-    int min_length = 1, max_length = 0;  // edges of a path; max 0: what the scene file says, else 12
-    int chains = 0;                      // 0: default
-    std::uint64_t seed = 0;
+    // How the chains of mmlt move. For path and bdpt: the seed and the lengths of paths.
+    Mix mix = builtin_mix("mmlt");
     int threads = 0;  // 0: all
-    // mmlt
-    std::int64_t bootstrap_samples = 0;  // 0: default
-    double large_step_probability = 0.1;
-    double technique_change_probability = 0.05;
-    StepKernel kernel = StepKernel::kelemen;
-    double kelemen_s1 = 1.0 / 1024, kelemen_s2 = 1.0 / 64;
-    double gaussian_sigma = 0.01;
     // Seconds between previews; 0: none.
     double preview_every = 0;
 };
@@ -52,20 +45,31 @@ struct RenderCallbacks {
 };
 
 struct StrategyStatistics {
-    std::string name;
+    std::string name;  // its label in the mix
     std::uint64_t proposals = 0, accepted = 0;
     double mean_acceptance = 0;
     std::map<std::string, std::uint64_t> failures;  // by kind
 };
 
+// Of chains that keep their length: all with the same one.
+struct LengthStatistics {
+    int length = 0;  // edges
+    std::uint64_t chains = 0;
+    double b = 0, b_standard_error = 0;  // what paths of this length add to `b`
+};
+
 struct RenderStatistics {
     std::uint64_t mutations = 0;  // or samples
+    std::uint64_t rounds = 0;     // mutations of each chain, or samples of each pixel that the filter reaches
     std::uint64_t rays = 0;
     double seconds_bootstrap = 0, seconds_render = 0, cpu_seconds = 0;
-    double b = 0, b_standard_error = 0;  // mean luminance of the crop window's pixels, and the error of that estimate
+    // Integral of f* over the area of the crop window, and its error: the mean luminance of the image, where the mix
+    // does not say another target.
+    double b = 0, b_standard_error = 0;
     int chains = 0, threads = 0, max_length = 0;
     std::vector<StrategyStatistics> strategies;
-    std::uint64_t non_finite = 0;  // NaN or infinite contributions: rejected, counted, and warned about
+    std::vector<LengthStatistics> lengths;  // of chains that keep theirs; in ascending order
+    std::uint64_t non_finite = 0;           // NaN or infinite contributions: rejected, counted, and warned about
     std::uint64_t peak_memory_bytes = 0;
     bool interrupted = false;
     std::vector<std::string> warnings;
@@ -76,8 +80,9 @@ struct RenderResult {
     RenderStatistics statistics;
 };
 
-// The settings with everything that was left to default filled in from the scene. Throws std::invalid_argument for
-// settings that make no sense together.
+// The settings with everything that was left to default filled in from the scene: of the mix, the lengths, the number
+// of chains and bootstrap samples, and the chains' length unless the run is limited by time. Throws
+// std::invalid_argument for settings that make no sense together.
 RenderSettings resolve(const Scene& scene, RenderSettings settings);
 
 // Throws as resolve() does.

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "base/process.h"
-#include "render/bootstrap.h"
 #include "render/chain_worker.h"
 #include "scene/replay.h"
 
@@ -31,19 +30,17 @@ class Bench {
   public:
     Bench(const Scene& scene, const RenderSettings& settings, int threads)
         : scene_(scene),
-          layout_(scene, settings.max_length),
-          techniques_(settings.min_length, settings.max_length),
+          layout_(scene, settings.mix.lengths.max),
+          techniques_(settings.mix.lengths.min, settings.mix.lengths.max),
           threads_(threads),
           arena_(threads),
           recorded_(threads) {
-        const auto seeds =
-            run_bootstrap(scene, layout_, techniques_, settings.bootstrap_samples, settings.chains, settings.seed)
-                .seeds;
-        if (seeds.empty()) throw std::runtime_error("no bootstrap path carries light");
-        for (std::size_t i = 0; i < seeds.size(); ++i)
-            chains_.push_back({Chain<PssState>(seeds[i]), Rng(settings.seed, stream(StreamUse::chain, i)), {}});
+        auto groups = run_bootstrap(scene, layout_, techniques_, settings.mix).groups;
+        if (groups.empty()) throw std::runtime_error("no bootstrap path carries light");
+        chains_ = start_chains(groups, settings.mix.seed);
         for (int i = 0; i < threads; ++i)
-            workers_.push_back(std::make_unique<ChainWorker>(scene, layout_, techniques_, settings));
+            workers_.push_back(
+                std::make_unique<ChainWorker>(scene, layout_, techniques_, settings.mix, groups.size()));
         mutations_per_chain_ = std::max<std::uint64_t>(1, mutations_per_slice / chains_.size());
     }
 

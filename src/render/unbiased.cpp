@@ -12,7 +12,7 @@ namespace keyhole {
 namespace {
 
 std::unique_ptr<Sampler> make_sampler(const Scene& scene, const RenderSettings& settings) {
-    const LengthRange lengths{settings.min_length, settings.max_length};
+    const LengthRange lengths{settings.mix.lengths.min, settings.mix.lengths.max};
     if (settings.integrator == Integrator::path) return std::make_unique<PathSampler>(scene, lengths);
     return std::make_unique<BdptSampler>(scene, lengths);
 }
@@ -39,7 +39,7 @@ RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings,
 
     auto sample_row = [&](std::uint64_t unit, int row) {
         Worker& worker = workers.local();
-        Rng rng(settings.seed, unit * static_cast<std::uint64_t>(rows) + static_cast<std::uint64_t>(row));
+        Rng rng(settings.mix.seed, unit * static_cast<std::uint64_t>(rows) + static_cast<std::uint64_t>(row));
         for (int column = 0; column < columns; ++column) {
             const double u = rng.uniform(), v = rng.uniform();
             worker.sampler->sample(window.at({(column + u) / columns, (row + v) / rows}), rng, worker.film);
@@ -60,6 +60,7 @@ RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings,
     RenderResult result;
     result.image = develop();
     RenderStatistics& s = result.statistics;
+    s.rounds = control.done();
     s.mutations = static_cast<std::uint64_t>(per_unit) * control.done();
     for (const Worker& worker : workers) {
         s.rays += worker.sampler->tracer().rays();

@@ -38,8 +38,9 @@ Proposal evaluate(Chart& chart, const PssState& x, PssState& y, double factor) {
 
 }  // namespace
 
-PathFailure LargeStep::draw(PssState& y, Rng& rng) const {
-    const Technique technique = techniques_.sample(rng.uniform());
+PathFailure LargeStep::draw(PssState& y, Rng& rng) const { return draw(y, techniques_.sample(rng.uniform()), rng); }
+
+PathFailure LargeStep::draw(PssState& y, Technique technique, Rng& rng) const {
     y.u.k = technique.k;
     y.u.t = technique.t;
     const CoordinateLayout& layout = chart_.layout();
@@ -51,7 +52,9 @@ PathFailure LargeStep::draw(PssState& y, Rng& rng) const {
 }
 
 Proposal LargeStep::propose(PssState& x, PssState& y, Rng& rng) const {
-    const PathFailure failure = draw(y, rng);
+    const int k = x.u.k;
+    const PathFailure failure =
+        fixed_length_ ? draw(y, {k, techniques_.sample_given_length(k, rng.uniform())}, rng) : draw(y, rng);
     return {estimate(y) / estimate(x), to_failure(failure)};
 }
 

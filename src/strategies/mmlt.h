@@ -15,20 +15,30 @@ using PssStrategy = Strategy<PssState, Rng>;
 // k, t ~ P(k, t) and u uniform. The density of the proposal is P(k, t), so
 //     r = [C(y) / P(k_y, t_y)] / [C(x) / P(k_x, t_x)].
 // Every proposal is also an independent estimate of b: C(y) / P(k_y, t_y), 0 if it failed.
+//
+// Where a chain keeps its length k, t ~ P(t | k), which stands in place of P(k, t) in the ratio and in the estimate;
+// that is then one of b_k, the part of b that paths of length k carry.
 class LargeStep final : public PssStrategy {
   public:
-    LargeStep(Chart& chart, const TechniqueDistribution& techniques) : chart_(chart), techniques_(techniques) {}
-    std::string_view name() const override { return "large step"; }
+    LargeStep(Chart& chart, const TechniqueDistribution& techniques, bool fixed_length = false)
+        : chart_(chart), techniques_(techniques), fixed_length_(fixed_length) {}
+    std::string_view name() const override { return "large-step"; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
-    // Draws an independent state, as the bootstrap does as well.
+    // Draws an independent state, of any length, as the bootstrap does as well.
     PathFailure draw(PssState& y, Rng& rng) const;
-    // C(y) / P(k_y, t_y) of a state so drawn.
-    double estimate(const PssState& y) const { return y.target / techniques_.probability(y.u.k, y.u.t); }
+    // The estimate of b, or of b_k with k = y.u.k, that a state so drawn is.
+    double estimate(const PssState& y) const {
+        return y.target / (fixed_length_ ? techniques_.probability_given_length(y.u.k, y.u.t)
+                                         : techniques_.probability(y.u.k, y.u.t));
+    }
 
   private:
+    PathFailure draw(PssState& y, Technique technique, Rng& rng) const;
+
     Chart& chart_;
     const TechniqueDistribution& techniques_;
+    bool fixed_length_;
 };
 
 // u' = u + symmetric step in the current chart, wrapped: r = C(y) / C(x).
@@ -36,7 +46,7 @@ template <class Kernel>
 class SmallStep final : public PssStrategy {
   public:
     SmallStep(Chart& chart, const Kernel& kernel) : chart_(chart), kernel_(kernel) {}
-    std::string_view name() const override { return "small step"; }
+    std::string_view name() const override { return "small-step"; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
   private:
@@ -50,7 +60,7 @@ class SmallStep final : public PssStrategy {
 class TechniqueChange final : public PssStrategy {
   public:
     TechniqueChange(Chart& chart, const TechniqueDistribution& techniques) : chart_(chart), techniques_(techniques) {}
-    std::string_view name() const override { return "technique change"; }
+    std::string_view name() const override { return "technique-change"; }
     double suitability(const PssState& x) const override { return techniques_.has_choice(x.u.k) ? 1 : 0; }
     bool suitability_varies() const override { return techniques_.techniques().front().k == 1; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;

@@ -16,7 +16,7 @@ struct PssState {
     // Takes over what a chart found at u.
     void set(const Evaluation& e) {
         raster = e.raster;
-        target = e.failure == PathFailure::none ? luminance(e.contribution) : 0;
+        target = e.target;
         if (target > 0) splat = e.contribution / target;
     }
 };

@@ -39,6 +39,12 @@ Technique TechniqueDistribution::sample(double u) const {
     return techniques_[std::upper_bound(begin, end, u * cumulative_.back()) - begin];
 }
 
+int TechniqueDistribution::sample_given_length(int k, double u) const {
+    const auto begin = cumulative_.begin() + first_[k], end = cumulative_.begin() + first_[k + 1];
+    const double value = *begin + u * (*end - *begin);
+    return techniques_[std::upper_bound(begin + 1, end, value) - cumulative_.begin() - 1].t;
+}
+
 int TechniqueDistribution::sample_other(int k, int t, double u) const {
     double left = u * (length_p_[k] - probability(k, t));
     int chosen = 0;

@@ -24,7 +24,9 @@ class TechniqueDistribution {
     Technique sample(double u) const;
     double probability(int k, int t) const { return p_[index(k, t)]; }
 
-    // Techniques of one length: q(t | k), whether there is more than one, and one other than t in proportion to q.
+    // Techniques of one length: one in proportion to q(t | k), one other than t, q itself, and whether there is more
+    // than one.
+    int sample_given_length(int k, double u) const;
     int sample_other(int k, int t, double u) const;
     double probability_given_length(int k, int t) const { return p_[index(k, t)] / length_p_[k]; }
     bool has_choice(int k) const { return k > 1; }

@@ -43,7 +43,7 @@ TEST_P(Agrees, WithBidirectionalPathTracing) {
     const double level = sidak_level(family_level, 2 * static_cast<int>(std::size(cases)));
 
     RenderSettings settings;
-    settings.max_length = c.max_length;
+    settings.mix.lengths.max = c.max_length;
     settings.integrator = Integrator::bdpt;
     settings.mutations_per_pixel = 400;
     const Replicates bdpt = render_replicates(*scene, settings, runs);
@@ -51,8 +51,8 @@ TEST_P(Agrees, WithBidirectionalPathTracing) {
 
     settings.integrator = Integrator::mmlt;
     settings.mutations_per_pixel = 4000;
-    settings.chains = 64;
-    settings.bootstrap_samples = 40000;
+    settings.mix.chain_count = 64;
+    settings.mix.bootstrap_samples = 40000;
     expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, std::string(c.scene) + "-mmlt");
 
     if (!c.path_finds_all) return;

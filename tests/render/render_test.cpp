@@ -14,16 +14,16 @@ TEST_P(Renders, TheSameBitsWithAnyNumberOfThreads) {
     RenderSettings settings;
     settings.integrator = GetParam();
     settings.mutations_per_pixel = 40;
-    settings.chains = 50;
-    settings.bootstrap_samples = 5000;
-    settings.max_length = 5;
+    settings.mix.chain_count = 50;
+    settings.mix.bootstrap_samples = 5000;
+    settings.mix.lengths.max = 5;
     settings.threads = 1;
     const Image one = render(*scene, settings).image;
     for (const int threads : {2, 7}) {
         settings.threads = threads;
         EXPECT_EQ(render(*scene, settings).image.rgb, one.rgb) << threads << " threads";
     }
-    settings.seed = 1;
+    settings.mix.seed = 1;
     EXPECT_NE(render(*scene, settings).image.rgb, one.rgb);
 }
 
@@ -32,7 +32,7 @@ TEST_P(Renders, AStoppedRunKeepsWhatItHas) {
     RenderSettings settings;
     settings.integrator = GetParam();
     settings.seconds = 60;
-    settings.bootstrap_samples = 5000;
+    settings.mix.bootstrap_samples = 5000;
     RenderCallbacks callbacks;
     int asked = 0;
     callbacks.stop = [&] { return ++asked > 2; };
@@ -66,8 +66,22 @@ TEST(Render, MaximalLengthComesFromTheScene) {
     const auto scene = own_scene("cornell-box", 4, 4, {{"max_depth", "3"}});
     RenderSettings settings;
     settings.mutations_per_pixel = 1;
-    settings.bootstrap_samples = 1000;
+    settings.mix.bootstrap_samples = 1000;
     EXPECT_EQ(render(*scene, settings).statistics.max_length, 3);
+}
+
+TEST(Render, TakesItsLengthFromTheMixWhereNothingElseSays) {
+    const auto scene = own_scene("cornell-box", 4, 4);
+    RenderSettings settings;
+    settings.mix.bootstrap_samples = 1000;
+    settings.mix.chain_count = 5;
+    settings.mix.chain_length = 70;
+    EXPECT_EQ(render(*scene, settings).statistics.mutations, 350u);
+    settings.mutations_per_pixel = 10;
+    EXPECT_EQ(render(*scene, settings).statistics.rounds, 32u);
+    settings.integrator = Integrator::path;
+    settings.mutations_per_pixel = 0;
+    EXPECT_THROW(render(*scene, settings), std::invalid_argument);
 }
 
 TEST(Render, RejectsSettingsThatMakeNoSense) {
@@ -77,11 +91,11 @@ TEST(Render, RejectsSettingsThatMakeNoSense) {
     settings.mutations_per_pixel = settings.seconds = 1;
     EXPECT_THROW(render(*scene, settings), std::invalid_argument);
     settings.seconds = 0;
-    settings.min_length = 5;
-    settings.max_length = 4;
+    settings.mix.lengths.min = 5;
+    settings.mix.lengths.max = 4;
     EXPECT_THROW(render(*scene, settings), std::invalid_argument);
-    settings.max_length = 6;
-    settings.large_step_probability = 0;
+    settings.mix.lengths.max = 6;
+    settings.mix.strategies.front().weight = 0;  // nothing else reaches every path
     EXPECT_THROW(render(*scene, settings), std::invalid_argument);
 }
 

@@ -49,7 +49,7 @@ struct Replicates {
 inline Replicates render_replicates(const Scene& scene, RenderSettings settings, int runs) {
     Replicates replicates;
     for (int i = 0; i < runs; ++i) {
-        settings.seed = 1000 + static_cast<std::uint64_t>(i);
+        settings.mix.seed = 1000 + static_cast<std::uint64_t>(i);
         const RenderResult result = render(scene, settings);
         EXPECT_EQ(result.statistics.non_finite, 0u);
         replicates.add(result.image);

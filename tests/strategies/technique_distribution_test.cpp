@@ -10,7 +10,7 @@
 namespace keyhole {
 namespace {
 
-constexpr double family_level = 1e-4;  // of the two chi-square tests below
+constexpr double family_level = 1e-4;  // of the three chi-square tests below
 
 std::vector<double> some_energies(std::size_t n) {
     std::vector<double> energies(n);
@@ -43,7 +43,19 @@ TEST(TechniqueDistribution, SamplesWithItsProbabilities) {
         const Technique t = d.sample(rng.uniform());
         ++observed[d.index(t.k, t.t)];
     }
-    EXPECT_GT(chi_square_p_value(expected, observed), sidak_level(family_level, 2));
+    EXPECT_GT(chi_square_p_value(expected, observed), sidak_level(family_level, 3));
+}
+
+TEST(TechniqueDistribution, SamplesTechniquesOfAGivenLength) {
+    TechniqueDistribution d(1, 5);
+    d.fit(some_energies(d.techniques().size()), 0.05);
+    Rng rng(7);
+    EXPECT_EQ(d.sample_given_length(1, rng.uniform()), 2);
+    constexpr int k = 4, n = 100000;
+    std::vector<double> expected = {0}, observed(k + 2, 0.0);
+    for (int t = 1; t <= k + 1; ++t) expected.push_back(n * d.probability_given_length(k, t));
+    for (int i = 0; i < n; ++i) ++observed[d.sample_given_length(k, rng.uniform())];
+    EXPECT_GT(chi_square_p_value(expected, observed), sidak_level(family_level, 3));
 }
 
 TEST(TechniqueDistribution, AnotherTechniqueComesInProportionAndIsNeverTheSame) {
@@ -57,7 +69,7 @@ TEST(TechniqueDistribution, AnotherTechniqueComesInProportionAndIsNeverTheSame) 
     Rng rng(6);
     for (int i = 0; i < n; ++i) ++observed[d.sample_other(k, t, rng.uniform())];
     EXPECT_EQ(observed[t], 0);
-    EXPECT_GT(chi_square_p_value(expected, observed), sidak_level(family_level, 2));
+    EXPECT_GT(chi_square_p_value(expected, observed), sidak_level(family_level, 3));
 }
 
 TEST(TechniqueDistribution, StaysUniformWithoutEnergy) {

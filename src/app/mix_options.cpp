@@ -1,0 +1,35 @@
+#include "app/mix_options.h"
+
+#include "base/error.h"
+
+namespace keyhole {
+
+Mix MixOptions::apply(Mix base) const {
+    if (!name.empty()) base = find_mix(name);
+    apply_settings(base, settings);
+    return base;
+}
+
+std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options) {
+    const auto set = [&options](const std::string& text) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw InputError({}, "'" + text + "' is not a setting; valid: KEY=VALUE, such as small-step.s2=0.05");
+        options.settings.push_back({text.substr(0, equals), text.substr(equals + 1), "--set"});
+    };
+    const auto mix = [&options](const std::string& text) { options.name = text; };
+    return {add_parsed(command, "--mix", "NAME|FILE", mix,
+                       "How the chains move: a mix that `keyhole mixes` lists, or a file (.toml) [default: mmlt]"),
+            add_parsed(command, "--set", "KEY=VALUE", set,
+                       "Change a key of the mix, such as small-step.s2=0.05, large-step.weight=0.3 or "
+                       "lengths.per-chain=fixed (repeatable)")
+                ->take_all()};
+}
+
+CLI::Option* add_mix_key(CLI::App& command, MixOptions& options, const std::string& name, const std::string& key,
+                         const std::string& help) {
+    const auto set = [&options, name, key](const std::string& text) { options.settings.push_back({key, text, name}); };
+    return add_parsed(command, name, "INTEGER", set, help);
+}
+
+}  // namespace keyhole

@@ -1,0 +1,28 @@
+// Options that choose and change a strategy mix, and their effect.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "app/options.h"
+#include "strategies/mix_file.h"
+
+namespace keyhole {
+
+struct MixOptions {
+    std::string name;               // --mix: a built-in mix or a file; empty: not given
+    std::vector<Setting> settings;  // in the order of the command line
+
+    // The mix `base`, or the one of --mix in its place, with the settings. Throws InputError.
+    Mix apply(Mix base) const;
+};
+
+// --mix and --set. `options` must live until the command line has been parsed.
+std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options);
+
+// An option that stands for `--set KEY=VALUE`.
+CLI::Option* add_mix_key(CLI::App& command, MixOptions& options, const std::string& name, const std::string& key,
+                         const std::string& help);
+
+}  // namespace keyhole

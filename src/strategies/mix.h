@@ -1,0 +1,78 @@
+// A strategy mix: everything that says how the chains of a render move. Its file format: mix_file.h, docs/mix-files.md.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/spectrum.h"
+#include "strategies/registry.h"
+
+namespace keyhole {
+
+// What happens to a proposal without contribution (theory, section 5). Only `off` is there so far.
+enum class Rectification { off, exclude, walk_on, retry };
+
+struct MixStrategy {
+    const StrategyInfo* info = nullptr;  // an entry of the registry
+    std::string label;                   // in statistics and --set; by default the strategy's name
+    double weight = 1;                   // relative to the others; 0: not used
+    Values parameters;                   // all of them; those without effect are at their defaults
+
+    bool operator==(const MixStrategy&) const = default;
+};
+
+// Integers that are 0 are left to the program.
+struct Mix {
+    std::string name, description;
+    TargetFunction target = TargetFunction::luminance;
+    Rectification rectification = Rectification::off;
+    std::uint64_t seed = 0;  // < 2^63, as TOML has no greater integers
+    PathLengths lengths;
+    int chain_count = 0;
+    std::int64_t chain_length = 0;  // mutations of each chain, where the render is given neither a time nor a number
+    std::int64_t bootstrap_samples = 0;
+    std::vector<MixStrategy> strategies;
+
+    bool operator==(const Mix&) const = default;
+};
+
+// A key of a mix file outside of its strategies.
+struct MixField {
+    std::string section;  // the TOML table; empty: the file's head
+    Parameter parameter;
+    std::function<Value(const Mix&)> get;
+    std::function<void(Mix&, const Value&)> set;  // `checked` values
+
+    std::string key() const { return section.empty() ? parameter.name : section + "." + parameter.name; }
+};
+const std::vector<MixField>& mix_fields();
+
+// The key of a strategy's weight, beside its parameters.
+const Parameter& weight_parameter();
+
+// Sets a key to a value written as on the command line: "seed", "chains.count", "small-step.sigma", "LABEL.weight".
+// Throws InputError (without a location) that says what would have been valid.
+void set_value(Mix& mix, const std::string& key, const std::string& text);
+
+// Puts parameters without effect back to their defaults. What is wrong with the strategy's parameters; empty: nothing.
+std::string settle(MixStrategy& strategy);
+
+// What is wrong with a mix as a whole: no strategies or weights, nothing that reaches every path, two strategies that
+// are the same, lengths, policies that do not exist yet.
+struct Contradiction {
+    std::string key;  // what it is about, as for set_value; "strategy" for all of them
+    std::string message;
+};
+std::optional<Contradiction> contradiction(const Mix& mix);
+
+// Sets keys in order and checks the result. Throws InputError, prefixed with the key that is wrong.
+struct Setting {
+    std::string key, text;
+    std::string origin;  // what the user wrote, for errors: "--set", "--seed"
+};
+void apply_settings(Mix& mix, const std::vector<Setting>& settings);
+
+}  // namespace keyhole

@@ -1,0 +1,85 @@
+#include "strategies/registry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace keyhole {
+namespace {
+
+double number(const Values& values, const char* name) { return std::get<double>(values.at(name)); }
+
+std::string applies_always(const Scene&, const PathLengths&) { return ""; }
+
+StrategyInfo large_step() {
+    StrategyInfo info;
+    info.name = "large-step";
+    info.description = "A path that is independent of the current one: length, technique and all coordinates anew";
+    info.ergodic = info.independent = true;
+    info.hindrance = applies_always;
+    info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<LargeStep>(c.chart, c.techniques, c.lengths.fixed);
+    };
+    return info;
+}
+
+StrategyInfo small_step() {
+    constexpr double half = 0.5;  // no point of the torus is farther
+    const auto step = [&](const char* name, double fallback, const char* kernel, const char* description) {
+        return Parameter::number(name, fallback, 0, half, description)
+            .open()
+            .in("of the unit cube's side")
+            .only_with("kernel", kernel);
+    };
+    StrategyInfo info;
+    info.name = "small-step";
+    info.description = "Moves every coordinate of the current technique by a small symmetric step";
+    info.parameters = {Parameter::choice("kernel", {"kelemen", "gaussian"}, "distribution of the steps"),
+                       step("s1", 1.0 / 1024, "kelemen", "smallest step"),
+                       step("s2", 1.0 / 64, "kelemen", "largest step; their logarithms are uniform"),
+                       step("sigma", 0.01, "gaussian", "standard deviation")};
+    info.hindrance = applies_always;
+    info.contradiction = [](const Values& v) {
+        const double s1 = number(v, "s1"), s2 = number(v, "s2");
+        return s1 > s2 ? fmt::format("s1 = {} is above s2 = {}", s1, s2) : "";
+    };
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        if (std::get<std::string>(v.at("kernel")) == "gaussian")
+            return std::make_unique<SmallStep<GaussianKernel>>(c.chart, GaussianKernel(number(v, "sigma")));
+        return std::make_unique<SmallStep<KelemenKernel>>(c.chart, KelemenKernel(number(v, "s1"), number(v, "s2")));
+    };
+    return info;
+}
+
+StrategyInfo technique_change() {
+    StrategyInfo info;
+    info.name = "technique-change";
+    info.description = "Keeps the coordinates and reads them by another technique of the same length: another path";
+    info.hindrance = [](const Scene&, const PathLengths& lengths) {
+        return std::string(lengths.max > 1 ? "" : "paths of one edge have one technique only");
+    };
+    info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<TechniqueChange>(c.chart, c.techniques);
+    };
+    return info;
+}
+
+}  // namespace
+
+const std::vector<StrategyInfo>& strategy_registry() {
+    static const std::vector<StrategyInfo> registry = {large_step(), small_step(), technique_change()};
+    return registry;
+}
+
+const StrategyInfo& find_strategy(const std::string& name) {
+    const auto& registry = strategy_registry();
+    const auto found = std::find_if(registry.begin(), registry.end(), [&](const auto& s) { return s.name == name; });
+    if (found != registry.end()) return *found;
+    std::vector<std::string> names;
+    for (const StrategyInfo& s : registry) names.push_back(s.name);
+    throw InputError({}, fmt::format("unknown strategy '{}'; {}", name, valid_names(name, names)));
+}
+
+}  // namespace keyhole

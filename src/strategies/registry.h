@@ -1,0 +1,52 @@
+// The strategies that a mix may hold, by name. To add one: write it in a file of its own, and give it an entry here.
+// Mix files, `keyhole mixes strategies` and docs/mix-files.md know it from that entry.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "strategies/mmlt.h"
+#include "strategies/parameter.h"
+
+namespace keyhole {
+
+// Which paths a chain moves among.
+struct PathLengths {
+    static constexpr int longest = 256;
+
+    int min = 1, max = 0;  // edges; max 0: what the scene file says, else 12
+    bool fixed = false;    // each chain keeps the length that it started with
+
+    bool operator==(const PathLengths&) const = default;
+};
+
+// What a strategy is made from, for one thread. Must outlive it.
+struct StrategyContext {
+    Chart& chart;
+    const TechniqueDistribution& techniques;
+    PathLengths lengths;  // resolved: max > 0
+};
+
+struct StrategyInfo {
+    std::string name;         // kebab-case
+    std::string description;  // one line
+    std::vector<Parameter> parameters;
+
+    bool ergodic = false;  // from every path, it alone can reach every path (of the chain's length, where it is fixed)
+    bool independent = false;  // its proposals do not depend on the state, and are estimates of b
+
+    // Why it can never move a chain in this scene, among these lengths (resolved); empty: it can.
+    std::string (*hindrance)(const Scene&, const PathLengths&);
+    // What is wrong with values that are each valid alone; empty: nothing. May be null.
+    std::string (*contradiction)(const Values&) = nullptr;
+    std::unique_ptr<PssStrategy> (*make)(const StrategyContext&, const Values&);
+};
+
+// In the order of the documentation.
+const std::vector<StrategyInfo>& strategy_registry();
+
+// Throws InputError (without a location) that lists the valid names.
+const StrategyInfo& find_strategy(const std::string& name);
+
+}  // namespace keyhole
