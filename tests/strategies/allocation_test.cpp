@@ -1,16 +1,15 @@
-// The inner loop allocates nothing: steps of a warm chain are counted by the global operator new.
+// What a chain allocates: nothing in the inner loop, and little in all. The global operator new counts.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <new>
 
-#include "chain/metropolis.h"
-#include "own_scenes.h"
-#include "strategies/mmlt.h"
+#include "chain/running_mean.h"
+#include "mmlt_chain.h"
 
 namespace {
-std::atomic<std::uint64_t> allocations{0};
+std::atomic<std::uint64_t> allocations{0}, allocated_bytes{0};
 }
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -18,6 +17,7 @@ std::atomic<std::uint64_t> allocations{0};
 #endif
 void* operator new(std::size_t size) {
     ++allocations;
+    allocated_bytes += size;
     if (void* p = std::malloc(size)) return p;
     throw std::bad_alloc();
 }
@@ -31,29 +31,20 @@ struct NoFilm {
     void splat(const PssState&, double) {}
 };
 
-class Loop : public testing::TestWithParam<const char*> {};
+class Loop : public testing::TestWithParam<std::string> {};
 
 TEST_P(Loop, AllocatesNothing) {
     const auto scene = own_scene(GetParam());
-    const CoordinateLayout layout(*scene, 8);
-    Chart chart(*scene, layout);
-    const TechniqueDistribution techniques(1, 8);
-    std::vector<Mixture<PssState, Rng>::Component> components;
-    components.push_back({std::make_unique<LargeStep>(chart, techniques), 0.3});
-    components.push_back({std::make_unique<SmallStep<KelemenKernel>>(chart, KelemenKernel()), 0.6});
-    components.push_back({std::make_unique<TechniqueChange>(chart, techniques), 0.1});
-    const Mixture<PssState, Rng> mixture(std::move(components));
-    const LargeStep large(chart, techniques);
+    MmltChain mmlt(*scene, 8);
     Rng rng(1);
-    PssState start(layout);
-    for (int i = 0; i < 100000 && !(start.target > 0); ++i) large.draw(start, rng);
+    const PssState start = mmlt.first_state(rng);
     ASSERT_GT(start.target, 0);
     Chain<PssState> chain(start);
-    Diagnostics diagnostics(mixture.size());
+    Diagnostics diagnostics(mmlt.mixture.size());
     NoFilm film;
-    for (int i = 0; i < 1000; ++i) chain.step(mixture, rng, film, diagnostics);
+    for (int i = 0; i < 1000; ++i) chain.step(mmlt.mixture, rng, film, diagnostics);
     const std::uint64_t before = allocations;
-    for (int i = 0; i < 20000; ++i) chain.step(mixture, rng, film, diagnostics);
+    for (int i = 0; i < 20000; ++i) chain.step(mmlt.mixture, rng, film, diagnostics);
     EXPECT_EQ(allocations, before);
     // The counter counts: what follows allocates.
     const PssState copy = start;
@@ -61,16 +52,25 @@ TEST_P(Loop, AllocatesNothing) {
     EXPECT_GT(copy.target, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(OwnScenes, Loop, testing::Values("cornell-box", "glossy-room", "gallery", "veil", "stage"));
+INSTANTIATE_TEST_SUITE_P(OwnScenes, Loop, testing::ValuesIn(own_scene_names()),
+                         [](const auto& test) { return test_name_of(test.param); });
 
-// What a chain holds: two states of maximal length 12.
-TEST(Chain, OfLengthTwelveCostsLessThanEightKilobytes) {
-    const auto scene = own_scene("gallery");
+class ChainOfLengthTwelve : public testing::TestWithParam<std::string> {};
+
+// Everything that is kept of one chain: its states and the held weight, its random numbers, its estimate of b.
+TEST_P(ChainOfLengthTwelve, CostsLessThanEightKilobytes) {
+    const auto scene = own_scene(GetParam());
     const CoordinateLayout layout(*scene, 12);
-    const PssState state(layout);
-    const std::size_t coordinates = (state.u.eye.capacity() + state.u.light.capacity()) * sizeof(double);
-    EXPECT_LT(2 * (sizeof(PssState) + coordinates) + sizeof(Chain<PssState>) + sizeof(Rng), 8192u);
+    const PssState start(layout);
+    const std::uint64_t before = allocated_bytes;
+    const Chain<PssState> chain(start);
+    const std::uint64_t states = allocated_bytes - before;
+    EXPECT_GE(states, 2 * sizeof(double) * (layout.eye_capacity() + layout.light_capacity()));
+    EXPECT_LT(states + sizeof(chain) + sizeof(Rng) + sizeof(RunningMean), 8192u);
 }
+
+INSTANTIATE_TEST_SUITE_P(OwnScenes, ChainOfLengthTwelve, testing::ValuesIn(own_scene_names()),
+                         [](const auto& test) { return test_name_of(test.param); });
 
 }  // namespace
 }  // namespace keyhole
