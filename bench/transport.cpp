@@ -4,6 +4,7 @@
 #include "own_scenes.h"
 #include "render/bootstrap.h"
 #include "render/chain_worker.h"
+#include "render/render.h"
 
 namespace keyhole {
 namespace {
@@ -63,15 +64,15 @@ void mutate(benchmark::State& state, const std::string& name) {
     const auto scene = load(name);
     RenderSettings settings;
     settings.mutations_per_pixel = 1;
-    settings.min_length = 2;
-    settings.max_length = max_length;
+    settings.mix.lengths = {2, max_length};
+    settings.mix.chain_count = 1;
     settings = resolve(*scene, settings);
     const CoordinateLayout layout(*scene, max_length);
     TechniqueDistribution techniques = all_techniques;
-    Bootstrap bootstrap = run_bootstrap(*scene, layout, techniques, 100000, 1, 0);
-    RunningChain running{Chain<PssState>(bootstrap.seeds.front()), Rng(1), {}};
-    ChainWorker worker(*scene, layout, techniques, settings);
-    for (auto _ : state) worker.advance(running, 1);
+    Bootstrap bootstrap = run_bootstrap(*scene, layout, techniques, settings.mix);
+    auto chains = start_chains(bootstrap.groups, settings.mix.seed);
+    ChainWorker worker(*scene, layout, techniques, settings.mix, bootstrap.groups.size());
+    for (auto _ : state) worker.advance(chains.front(), 1);
 }
 
 const bool added = [] {

@@ -50,7 +50,7 @@ TEST_P(ScaledAndMoved, RendersTheSameImage) {
     RenderSettings settings;
     settings.integrator = GetParam();
     settings.mutations_per_pixel = 64;
-    settings.max_length = 6;
+    settings.mix.lengths.max = 6;
     const Image expected = render(*room(1, {0, 0, 0}), settings).image;
     struct Place {
         double scale;
