@@ -36,6 +36,19 @@ compiler_package() {
     esac
 }
 
+# The Debian package of its fuzzer runtime: libclang-rt-14-dev for clang++-14.
+fuzzer_package() {
+    local version
+    version=$(basename "$1" | sed -n 's/^clang++\(-[0-9]*\)$/\1/p')
+    echo "libclang-rt${version}-dev"
+}
+
+# Whether a compiler that is clang can build fuzz targets: their runtime is a package of its own.
+has_fuzzer_runtime() {
+    echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' |
+        "$1" -fsanitize=fuzzer,address -x c++ - -o /dev/null 2>/dev/null
+}
+
 # A program for the preprocessor that is left with the lines of the libraries whose headers are not there.
 probe() {
     local package name headers header condition
@@ -52,8 +65,12 @@ missing_requirements() {
     have ninja || echo "ninja-build|Ninja"
     if have "$1" && echo 'int main() {}' | "$1" -x c++ -fsyntax-only - 2>/dev/null; then
         probe | "$1" -std=c++20 -E -P -x c++ - | sed -n 's/^missing|//p'
+        if [ "${preset:-}" = fuzz ] && ! has_fuzzer_runtime "$1"; then
+            echo "$(fuzzer_package "$1")|clang with the runtime of libFuzzer"
+        fi
     else
         echo "$(compiler_package "$1")|a C++20 compiler: $1 (g++ 12, clang 14, or newer)"
+        [ "${preset:-}" != fuzz ] || echo "$(fuzzer_package "$1")|the runtime of libFuzzer"
         cut -d'|' -f1,2 <<<"$libraries"
     fi
 }

@@ -3,7 +3,8 @@
 #
 #   scripts/test.sh [PRESET] [--werror] [--compiler CXX] [--bench] [--build-only]
 #
-#   PRESET          release (default), debug, asan (address and undefined-behaviour sanitizers) or tsan
+#   PRESET          release (default), debug, asan (address and undefined-behaviour sanitizers), tsan, or fuzz (the fuzz
+#                   targets of tests/fuzz alone, half a minute each; needs --compiler clang++)
 #   --werror        treat warnings as errors
 #   --compiler CXX  compile with CXX, in build/PRESET-CXX (default: $CXX or c++, in build/PRESET)
 #   --bench         build the micro-benchmarks of bench/ as well
@@ -20,7 +21,7 @@ options=(-DKEYHOLE_WERROR=OFF -DKEYHOLE_BENCH=OFF)
 run_tests=yes
 while [ $# -gt 0 ]; do
     case $1 in
-        release | debug | asan | tsan) preset=$1 ;;
+        release | debug | asan | tsan | fuzz) preset=$1 ;;
         --werror) options+=(-DKEYHOLE_WERROR=ON) ;;
         --compiler) compiler=${2:?--compiler needs a name} && shift ;;
         --bench)
@@ -29,7 +30,7 @@ while [ $# -gt 0 ]; do
             ;;
         --build-only) run_tests=no ;;
         -h | --help) sed -n '2,/^set/s/^# \{0,1\}//p' "$0" && exit ;;
-        *) fail "unknown argument '$1'; valid: release, debug, asan, tsan, --werror, --compiler CXX, --bench, --build-only" ;;
+        *) fail "unknown argument '$1'; valid: release, debug, asan, tsan, fuzz, --werror, --compiler CXX, --bench, --build-only" ;;
     esac
     shift
 done
@@ -40,7 +41,9 @@ if [ -n "$compiler" ]; then
     options+=(-DCMAKE_CXX_COMPILER="$compiler")
 fi
 ensure_requirements "${compiler:-${CXX:-c++}}"
-build_preset "$preset" "$folder" all "${options[@]}"
+target=all
+[ "$preset" != fuzz ] || target=fuzzers
+build_preset "$preset" "$folder" "$target" "${options[@]}"
 if [ "$run_tests" = yes ]; then
     ctest --test-dir "$folder" --output-on-failure --parallel "$(nproc)" </dev/null
 fi

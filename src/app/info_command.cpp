@@ -44,6 +44,16 @@ std::map<std::string, int> emitter_kinds(const Scene& scene) {
     return kinds;
 }
 
+// Each strategy's name, and why it can never move a chain here (empty: it can), among lengths as render chooses them.
+std::vector<std::pair<std::string, std::string>> hindrances(const Scene& scene) {
+    RenderSettings settings;
+    settings.mutations_per_pixel = 1;
+    const PathLengths lengths = resolve(scene, settings).mix.lengths;
+    std::vector<std::pair<std::string, std::string>> list;
+    for (const StrategyInfo& s : strategy_registry()) list.emplace_back(s.name, s.hindrance(scene, lengths));
+    return list;
+}
+
 Json max_length_json(const Scene& scene) {
     if (scene.max_path_length() == 0) return nullptr;
     return scene.max_path_length() < 0 ? Json("unbounded") : Json(scene.max_path_length());
@@ -73,6 +83,8 @@ Json info_json(const InfoOptions& options, const LoadedScene& loaded) {
     json["seconds"] = {{"reading", loaded.seconds_reading}, {"building", loaded.seconds_building}};
     json["requires"] = Json::object();
     for (const Requirement& r : requirement_list(scene.requirements())) json["requires"][r.name] = r.value;
+    json["strategies"] = Json::object();
+    for (const auto& [name, why] : hindrances(scene)) json["strategies"][name] = why.empty() ? Json(true) : Json(why);
     json["unused"] = loaded.unused;
     json["warnings"] = loaded.warnings;
     return json;
@@ -115,6 +127,9 @@ void print_info(const InfoOptions& options, const LoadedScene& loaded) {
                format_duration(loaded.seconds_building));
     for (const Requirement& r : requirement_list(scene.requirements()))
         fmt::print("  {:<18} {:<4} {}\n", r.name, r.value ? "yes" : "no", r.meaning);
+    fmt::print("\nstrategies\n");
+    for (const auto& [name, why] : hindrances(scene))
+        fmt::print("  {:<18} {}\n", name, why.empty() ? "yes" : "no   " + why);
     print_list("unused", loaded.unused);
     for (const std::string& warning : loaded.warnings) print_warning(warning);
 }

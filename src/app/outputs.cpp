@@ -66,7 +66,7 @@ std::vector<std::string> Outputs::write(const Image& image, const Json& run) con
     const WriteOptions options = write_options(run);
     for (const std::string& name : images_)
         keep(write_or_rescue(name, [&](const std::string& file) { write_image(file, image, options); }));
-    keep(write_or_rescue(report_, [&](const std::string& file) { write_file(file, run.dump(2) + "\n"); }));
+    keep(write_or_rescue(report_, [&](const std::string& file) { write_file(file, json_text(run, 2) + "\n"); }));
     return failures;
 }
 

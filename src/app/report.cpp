@@ -57,9 +57,13 @@ double per_second(std::uint64_t count, double seconds) {
 }
 
 // JSON values as metadata text, strings without quotes.
-std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : json_text(value); }
 
 }  // namespace
+
+std::string json_text(const Json& json, int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 std::string scene_hash(const Scene& scene) { return fmt::format("{:016x}", scene.content_hash()); }
 
@@ -145,7 +149,7 @@ std::map<std::string, std::string> image_metadata(const Json& report) {
         {"keyhole:version", version()},
         {"keyhole:scene", text_of(report.at("scene").at("file"))},
         {"keyhole:scene_hash", text_of(report.at("scene").at("hash"))},
-        {"keyhole:run", report.dump()},
+        {"keyhole:run", json_text(report)},
     };
     for (const char* name : {"integrator", "seed"})
         metadata[std::string("keyhole:") + name] = text_of(report.at("settings").at(name));

@@ -25,6 +25,9 @@ std::string scene_hash(const Scene& scene);  // 16 hexadecimal digits
 
 Json film_json(const FilmSettings& film);
 
+// As text on one line, or indented. Bytes of names that are not UTF-8 are replaced: no run is lost to them.
+std::string json_text(const Json& json, int indent = -1);
+
 // Image attributes: the main entries by name ("keyhole:seed") for people and scripts, and all of it as JSON
 // ("keyhole:run").
 std::map<std::string, std::string> image_metadata(const Json& report);

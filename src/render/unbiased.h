@@ -5,7 +5,7 @@
 
 namespace keyhole {
 
-// settings.max_length is resolved already.
+// `settings` are resolved.
 RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks);
 
 }  // namespace keyhole

@@ -66,6 +66,10 @@ const Malformed cases[] = {
     head("seed@\n", "Error while parsing"),
     {"[[strategy]@\n", "Error while parsing"},
     {"[lengths]\nmin = 1\n@[lengths]\n", "redefine"},
+    // characters that toml++ mistakes for ones it never meets
+    head("seed = \xd0\x87@ 5", "Error while parsing"),
+    {"@\xcc\xaa", "Error while parsing"},
+    {"[@$]", "Error while parsing"},
     // the head
     head("@sed = 1",
          "unknown key 'sed'; did you mean 'seed'? valid names: name, description, target, rectification, seed"),
