@@ -147,8 +147,9 @@ Value checked(const Parameter& parameter, const Value& value) {
 
 Value value_from_text(const Parameter& parameter, const std::string& text) {
     using Type = Parameter::Type;
-    const auto is_number = [&] { return parameter.type == Type::number || parameter.type == Type::integer; };
-    if (is_number() && text != parameter.word) {
+    const bool is_number = parameter.type == Type::number || parameter.type == Type::integer;
+    const bool is_word = !parameter.word.empty() && text == parameter.word;
+    if (is_number && !is_word) {
         try {
             if (parameter.type == Type::integer) return checked(parameter, parse_integer(text, INT64_MIN, INT64_MAX));
             return checked(parameter, parse_real(text, -INFINITY, INFINITY));

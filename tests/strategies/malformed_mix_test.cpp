@@ -67,7 +67,7 @@ const Malformed cases[] = {
     {"[[strategy]@\n", "Error while parsing"},
     {"[lengths]\nmin = 1\n@[lengths]\n", "redefine"},
     // characters that toml++ mistakes for ones it never meets
-    head("seed = \xd0\x87@ 5", "Error while parsing"),
+    head("seed = @\xd0\x87 5", "Error while parsing"),
     {"@\xcc\xaa", "Error while parsing"},
     {"[@$]", "Error while parsing"},
     // the head
