@@ -1,6 +1,7 @@
 // Symmetric steps in primary sample space, wrapped to the unit torus.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -35,7 +36,8 @@ inline Float8 exp2_approximate(Float8 x) {
 // |step| = s2 (s1/s2)^U, uniform in logarithm between s1 and s2 [Kelemen 2002, section 4].
 struct KelemenKernel {
     explicit KelemenKernel(double s1 = 1.0 / 1024, double s2 = 1.0 / 64)
-        : scale_(static_cast<float>(s2)), log2_ratio_(static_cast<float>(std::log2(s1 / s2)) * 0x1p-31f) {}
+        : scale_(static_cast<float>(s2)),
+          log2_ratio_(static_cast<float>(std::max(std::log2(s1 / s2), smallest_log2)) * 0x1p-31f) {}
 
     // `n` coordinates at once, and those up to the next multiple of `lanes` with them (of no meaning). One random word
     // each: a sign and a magnitude, which are independent, so the step is symmetric whatever the rounding of the
@@ -52,6 +54,8 @@ struct KelemenKernel {
     }
 
   private:
+    static constexpr double smallest_log2 = -126;  // of exp2_approximate; far below what moves a coordinate
+
     float scale_, log2_ratio_;
 };
 

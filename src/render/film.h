@@ -36,9 +36,9 @@ class FixedPointFilm {
         const int x1 = std::min(width() - 1, static_cast<int>(std::floor(x - 0.5 + radius)));
         const int y0 = std::max(0, static_cast<int>(std::ceil(y - 0.5 - radius)));
         const int y1 = std::min(height() - 1, static_cast<int>(std::floor(y - 0.5 + radius)));
-        for (int px = x0; px <= x1; ++px) {
-            const Spectrum column = value * settings_.filter(px + 0.5 - x);
-            for (int py = y0; py <= y1; ++py) add(px, py, column * settings_.filter(py + 0.5 - y));
+        for (int py = y0; py <= y1; ++py) {
+            const Spectrum row = value * settings_.filter(py + 0.5 - y);
+            for (int px = x0; px <= x1; ++px) add(px, py, row * settings_.filter(px + 0.5 - x));
         }
     }
 

@@ -8,11 +8,11 @@
 namespace keyhole {
 namespace {
 
+using Type = ReconstructionFilter::Type;
+
 void require_positive(double value, const char* what) {
     if (!(value > 0) || !std::isfinite(value)) throw std::invalid_argument(std::string(what) + " must be positive");
 }
-
-double gaussian(double x, double stddev) { return std::exp(-0.5 * sqr(x / stddev)); }
 
 }  // namespace
 
@@ -28,8 +28,6 @@ const char* ReconstructionFilter::name() const {
     return "";
 }
 
-using Type = ReconstructionFilter::Type;
-
 ReconstructionFilter make_box_filter(double radius) {
     require_positive(radius, "the filter's radius");
     return {.type = Type::box, .radius = radius, .scale = 1 / (2 * radius)};
@@ -43,7 +41,7 @@ ReconstructionFilter make_tent_filter(double radius) {
 ReconstructionFilter make_gaussian_filter(double stddev, double radius) {
     require_positive(stddev, "the filter's standard deviation");
     require_positive(radius, "the filter's radius");
-    const double shift = gaussian(radius, stddev);
+    const double shift = ReconstructionFilter::bell(radius, stddev);
     const double integral =
         stddev * std::sqrt(2 * pi) * std::erf(radius / (stddev * std::sqrt(2.0))) - 2 * radius * shift;
     // The shifted bell loses its digits where the radius is a tiny part of the standard deviation.

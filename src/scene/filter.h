@@ -23,10 +23,12 @@ struct ReconstructionFilter {
             case Type::tent:
                 return scale * (1 - distance / radius);
             case Type::gaussian:
-                return scale * (std::exp(-0.5 * (x / stddev) * (x / stddev)) - shift);
+                return scale * (bell(distance, stddev) - shift);
         }
         return 0;
     }
+    // The gaussian before it is shifted and normalised.
+    static double bell(double x, double stddev) { return std::exp(-0.5 * (x / stddev) * (x / stddev)); }
     const char* name() const;
 };
 

@@ -86,6 +86,21 @@ TEST(KelemenKernel, StepsLieBetweenItsBounds) {
     EXPECT_NEAR(largest, s2, 1e-4 * s2);
 }
 
+// Steps below what a coordinate can be moved by: no step, or one of the right size, never a wild one.
+TEST(KelemenKernel, StaysWithinItsBoundsHoweverSmallTheSmallestStep) {
+    for (const double s1 : {1e-30, 1e-45, 1e-300, 5e-324}) {
+        const double s2 = 1.0 / 64;
+        const KelemenKernel kernel(s1, s2);
+        Rng rng(4);
+        double x[lanes], y[lanes];
+        std::fill_n(x, lanes, 0.5);
+        for (int i = 0; i < 10000; ++i) {
+            kernel(x, y, lanes, rng);
+            for (int j = 0; j < lanes; ++j) ASSERT_LE(std::abs(y[j] - x[j]), s2 * (1 + 1e-5)) << s1;
+        }
+    }
+}
+
 TEST(Exp2Approximate, IsGoodToFourInAMillion) {
     for (float x = 0; x >= -126; x -= 0.001f)
         ASSERT_NEAR(exp2_approximate(Float8{} + x)[0] / std::exp2(static_cast<double>(x)), 1, 4e-6) << x;

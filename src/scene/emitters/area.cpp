@@ -23,13 +23,17 @@ template <class Radiance>
 class AreaEmitter final : public Emitter {
   public:
     AreaEmitter(const Shape& shape, Radiance radiance)
-        : shape_(shape), area_(shape.area()), pdf_area_(1 / area_), radiance_(std::move(radiance)) {
+        : shape_(shape),
+          origin_rounding_(origin_rounding(shape.origin)),
+          area_(shape.area()),
+          pdf_area_(1 / area_),
+          radiance_(std::move(radiance)) {
         traits_.surface = true;
     }
 
     EmitterPoint sample_point(double u_part, const Vec2& u) const override {
         const ShapeSample s = shape_.sample(u_part, u);
-        return {s.p + shape_.origin, s.ng, s.uv, pdf_area_, s.offset + origin_rounding(shape_.origin)};
+        return {s.p + shape_.origin, s.ng, s.uv, pdf_area_, s.offset + origin_rounding_};
     }
     double pdf_point(const EmitterPoint&) const override { return pdf_area_; }
 
@@ -59,6 +63,7 @@ class AreaEmitter final : public Emitter {
 
   private:
     const Shape& shape_;
+    float origin_rounding_;
     double area_, pdf_area_;
     Radiance radiance_;
 };
