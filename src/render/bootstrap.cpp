@@ -11,8 +11,9 @@
 namespace keyhole {
 namespace {
 
-// Share of large steps that is uniform over techniques, so that none is out of reach because a few samples missed it.
-constexpr double uniform_share = 0.05;
+// Share of large steps that chooses techniques by their prior, so that none is out of reach because the samples that the
+// fit is made from missed it.
+constexpr double prior_share = 0.05;
 
 struct Worker {
     Chart chart;
@@ -33,7 +34,7 @@ void for_each_sample(std::uint64_t count, const Body& body) {
     });
 }
 
-// Energies from `samples` large steps that choose techniques uniformly.
+// Energies from `samples` large steps that choose techniques by their prior.
 void fit_techniques(Workers& workers, TechniqueDistribution& techniques, std::uint64_t samples, std::uint64_t seed) {
     struct Found {
         Technique technique;
@@ -49,7 +50,7 @@ void fit_techniques(Workers& workers, TechniqueDistribution& techniques, std::ui
     });
     std::vector<double> energies(techniques.techniques().size(), 0.0);
     for (const Found& f : found) energies[techniques.index(f.technique.k, f.technique.t)] += f.estimate;
-    techniques.fit(energies, uniform_share);
+    techniques.fit(energies, prior_share);
 }
 
 // The mean of the samples of each length (of all, where `lengths` holds zeros): given its length, a sample estimates b

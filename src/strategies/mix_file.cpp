@@ -172,28 +172,27 @@ MixStrategy Reader::read_strategy(const Mix& mix, const toml::table& table) {
     const std::string name = std::get<std::string>(read_value(Parameter::text("type", ""), *type));
     strategy.info = at(type->source().begin, [&] { return &find_strategy(name); });
     strategy.label = read_label(mix, strategy, table);
-    const toml::node* weight = table.get("weight");
-    if (!weight) fail(here, fmt::format("'{}' has no 'weight'; valid: {}", name, valid_values(weight_parameter())));
-    strategy.weight = std::get<double>(read_value(weight_parameter(), *weight));
-
     const std::vector<Parameter>& parameters = strategy.info->parameters;
     std::vector<std::string> keys = {"type", "weight", "label"};
-    for (const Parameter& p : parameters) {
-        keys.push_back(p.name);
-        const toml::node* node = table.get(p.name);
-        strategy.parameters[p.name] = node ? read_value(p, *node) : p.fallback;
-    }
+    for (const Parameter& p : parameters) keys.push_back(p.name);
     for (const auto& [key, node] : table) {
         const std::string given(key.str());
         if (std::find(keys.begin(), keys.end(), given) == keys.end())
             fail(key.source().begin,
                  fmt::format("unknown key '{}' of '{}'; {}", given, name, valid_names(given, keys)));
-        const auto p =
-            std::find_if(parameters.begin(), parameters.end(), [&](const auto& q) { return q.name == given; });
-        if (p != parameters.end() && !has_effect(*p, strategy.parameters))
-            fail(key.source().begin,
-                 fmt::format("'{}' has no effect here; it needs {} = \"{}\"", given, p->needs, p->needed_value));
     }
+    const toml::node* weight = table.get("weight");
+    if (!weight) fail(here, fmt::format("'{}' has no 'weight'; valid: {}", name, valid_values(weight_parameter())));
+    strategy.weight = std::get<double>(read_value(weight_parameter(), *weight));
+    for (const Parameter& p : parameters) {
+        const toml::node* node = table.get(p.name);
+        strategy.parameters[p.name] = node ? read_value(p, *node) : p.fallback;
+    }
+    for (const auto& [key, node] : table)
+        for (const Parameter& p : parameters)
+            if (p.name == key.str() && !has_effect(p, strategy.parameters))
+                fail(key.source().begin,
+                     fmt::format("'{}' has no effect here; it needs {} = \"{}\"", p.name, p.needs, p.needed_value));
     if (const std::string wrong = settle(strategy); !wrong.empty()) fail(here, fmt::format("'{}': {}", name, wrong));
     places_[strategy.label] = here;
     return strategy;

@@ -14,16 +14,21 @@ TechniqueDistribution::TechniqueDistribution(int min_length, int max_length) : f
             for (int t = 1; t <= k + 1; ++t) techniques_.push_back({k, t});
     }
     first_[max_length + 1] = static_cast<int>(techniques_.size());
-    p_.assign(techniques_.size(), 1.0 / static_cast<double>(techniques_.size()));
+    double lengths = 0;
+    for (int k = min_length; k <= max_length; ++k) lengths += 1.0 / k;
+    for (const Technique& technique : techniques_) {
+        const int k = technique.k;
+        prior_.push_back(1 / (lengths * k * (first_[k + 1] - first_[k])));
+    }
+    p_ = prior_;
     length_p_.assign(max_length + 1, 0.0);
     accumulate();
 }
 
-void TechniqueDistribution::fit(const std::vector<double>& energies, double uniform_share) {
+void TechniqueDistribution::fit(const std::vector<double>& energies, double prior_share) {
     const double sum = std::accumulate(energies.begin(), energies.end(), 0.0);
-    const double uniform = 1.0 / static_cast<double>(p_.size());
     for (std::size_t i = 0; i < p_.size(); ++i)
-        p_[i] = sum > 0 ? (1 - uniform_share) * energies[i] / sum + uniform_share * uniform : uniform;
+        p_[i] = sum > 0 ? (1 - prior_share) * energies[i] / sum + prior_share * prior_[i] : prior_[i];
     accumulate();
 }
 

@@ -12,12 +12,15 @@ struct Technique {
 
 class TechniqueDistribution {
   public:
-    // Uniform over all techniques of lengths min_length .. max_length (k = 1 has the one technique t = 2).
+    // The prior over all techniques of lengths min_length .. max_length (k = 1 has the one technique t = 2): as paths of
+    // k edges take a time in proportion to k, P(k) is in proportion to 1 / k and every length gets the same time, shared
+    // evenly by its techniques. Short paths carry most light, and light that is seen directly may cover few pixels: with
+    // techniques drawn evenly one of thousands, where long paths are allowed, it would be missed.
     TechniqueDistribution(int min_length, int max_length);
 
-    // In proportion to `energies` (one per techniques()), mixed with a uniform share so that every technique stays
-    // reachable.
-    void fit(const std::vector<double>& energies, double uniform_share);
+    // In proportion to `energies` (one per techniques()), mixed with a share of the prior so that every technique stays
+    // reachable. The prior alone if all energies are zero.
+    void fit(const std::vector<double>& energies, double prior_share);
 
     const std::vector<Technique>& techniques() const { return techniques_; }
 
@@ -39,7 +42,7 @@ class TechniqueDistribution {
 
     std::vector<Technique> techniques_;
     std::vector<int> first_;  // by k; first_[k + 1] ends k's range
-    std::vector<double> p_, cumulative_, length_p_;
+    std::vector<double> prior_, p_, cumulative_, length_p_;
 };
 
 }  // namespace keyhole

@@ -7,6 +7,25 @@
 namespace keyhole {
 namespace {
 
+// A lamp that covers few pixels gives the image half of its light, among 2,000 techniques that mostly find nothing. With
+// techniques drawn evenly from the start it was missed: 0.119 instead of 0.256, and an error said to be 0.0005. False
+// alarm: 2e-6, by the normal distribution of the estimates of b.
+TEST(Metropolis, FindsLightSeenDirectlyWhereLongPathsAreAllowed) {
+    const auto scene = own_scene("cornell-box", 128, 128);
+    RenderSettings settings;
+    settings.mutations_per_pixel = 8;
+    settings.mix.lengths.max = 64;
+    settings.integrator = Integrator::path;
+    const double expected = render(*scene, settings).statistics.b;
+    settings.integrator = Integrator::mmlt;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        settings.mix.seed = seed;
+        const RenderStatistics chains = render(*scene, settings).statistics;
+        EXPECT_NEAR(chains.b, expected, 5 * chains.b_standard_error) << seed;
+        EXPECT_LT(chains.b_standard_error, 0.05 * expected) << seed;
+    }
+}
+
 class Renders : public testing::TestWithParam<Integrator> {};
 
 TEST_P(Renders, TheSameBitsWithAnyNumberOfThreads) {

@@ -109,6 +109,7 @@ const Malformed cases[] = {
     strategy("[[strategy]]\ntype = @3\nweight = 1\n", "'type' cannot be 3; valid: a text in quotes"),
     strategy("[[strategy]]\ntype = @\"smal-step\"\nweight = 1\n",
              "unknown strategy 'smal-step'; did you mean 'small-step'? valid names: large-step, small-step"),
+    strategy("[[strategy]]\ntype = \"small-step\"\n@wieght = 1\n", "did you mean 'weight'?"),
     strategy("@[[strategy]]\ntype = \"small-step\"\n", "'small-step' has no 'weight'; valid: a number from 0"),
     strategy("[[strategy]]\ntype = \"small-step\"\nweight = @-0.1\n",
              "'weight' cannot be -0.1; valid: a number from 0"),

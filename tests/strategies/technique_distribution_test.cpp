@@ -72,10 +72,16 @@ TEST(TechniqueDistribution, AnotherTechniqueComesInProportionAndIsNeverTheSame) 
     EXPECT_GT(chi_square_p_value(expected, observed), sidak_level(family_level, 3));
 }
 
-TEST(TechniqueDistribution, StaysUniformWithoutEnergy) {
-    TechniqueDistribution d(1, 3);
-    d.fit(std::vector<double>(d.techniques().size(), 0.0), 0.05);
-    for (const Technique& t : d.techniques()) EXPECT_DOUBLE_EQ(d.probability(t.k, t.t), 1.0 / 8);
+// Every length gets the same time, every technique of a length the same share: k P(k, t) n_k is constant.
+TEST(TechniqueDistribution, GivesEveryLengthTheSameTimeWithoutEnergy) {
+    for (const bool fitted : {false, true}) {
+        TechniqueDistribution d(1, 3);
+        if (fitted) d.fit(std::vector<double>(d.techniques().size(), 0.0), 0.05);
+        const double per_length = 1 / (1 + 1.0 / 2 + 1.0 / 3);
+        EXPECT_DOUBLE_EQ(d.probability(1, 2), per_length);
+        for (int t = 1; t <= 3; ++t) EXPECT_DOUBLE_EQ(d.probability(2, t), per_length / 2 / 3);
+        for (int t = 1; t <= 4; ++t) EXPECT_DOUBLE_EQ(d.probability(3, t), per_length / 3 / 4);
+    }
 }
 
 }  // namespace
