@@ -74,6 +74,12 @@ CLI::Option* add_choice(CLI::App& command, const std::string& names, const std::
     return add_parsed(command, names, type, read, help);
 }
 
+ReconstructionFilter filter_of(const std::string& name) {
+    for (const ReconstructionFilter& filter : {make_box_filter(), make_tent_filter(), make_gaussian_filter()})
+        if (name == filter.name()) return filter;
+    throw InputError({}, "unknown filter '" + name + "'; " + valid_names(name, {"box", "tent", "gaussian"}));
+}
+
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     ReaderOptions& reader = options.reader;
     command.add_option("SCENE", options.filename, "Scene file: Mitsuba XML, dialect 0.5/0.6 or 3.x")->required();
@@ -97,6 +103,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     };
     add_parsed(command, "--crop", "X,Y,W,H", crop,
                "Render this window of the film only, in pixels from the top left corner");
+    const auto filter = [&reader](const std::string& text) { reader.filter = filter_of(text); };
+    add_parsed(command, "--filter", "box|tent|gaussian", filter,
+               "Reconstruction filter, with its default width [default: the scene file's]");
     command.add_flag("--lenient", reader.lenient,
                      "Unknown parameters in the scene file are warnings instead of errors");
 }

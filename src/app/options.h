@@ -29,11 +29,14 @@ CLI::Option* add_integer(CLI::App& command, const std::string& names, Integer& t
 CLI::Option* add_choice(CLI::App& command, const std::string& names, const std::vector<std::string>& choices,
                         std::function<void(std::size_t)> choose, const std::string& help);
 
-// SCENE, -D, --lenient, --size and --crop.
+// SCENE, -D, --lenient, --size, --crop and --filter.
 struct SceneOptions {
     std::string filename;
     ReaderOptions reader;
 };
 void add_scene_options(CLI::App& command, SceneOptions& options);
+
+// The filter of a name ("box", "tent", "gaussian") with its default width. Throws InputError for other names.
+ReconstructionFilter filter_of(const std::string& name);
 
 }  // namespace keyhole

@@ -19,6 +19,7 @@ Json scene_json(const SceneOptions& options, const LoadedScene& loaded) {
             {"hash", scene_hash(*loaded.scene)},
             {"size", r.width > 0 ? Json{r.width, r.height} : Json()},
             {"crop", r.override_crop ? Json{r.crop_x, r.crop_y, r.crop_width, r.crop_height} : Json()},
+            {"filter", r.filter ? Json(r.filter->name()) : Json()},
             {"defines", r.defines},
             {"lenient", r.lenient},
             {"triangles", loaded.scene->statistics().triangles},

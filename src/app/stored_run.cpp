@@ -43,6 +43,7 @@ SceneOptions scene_options(const Json& scene) {
         options.reader.crop_width = crop.at(2);
         options.reader.crop_height = crop.at(3);
     }
+    if (const Json& filter = scene.at("filter"); !filter.is_null()) options.reader.filter = filter_of(filter);
     return options;
 }
 
@@ -84,6 +85,7 @@ SceneOptions merge(const SceneOptions& stored, const SceneOptions& given) {
     ReaderOptions& to = result.reader;
     for (const auto& [name, value] : from.defines) to.defines[name] = value;
     to.lenient = to.lenient || from.lenient;
+    if (from.filter) to.filter = from.filter;
     if (from.width > 0) {
         to.width = from.width;
         to.height = from.height;

@@ -70,7 +70,8 @@ void report_b(const std::vector<ChainGroup>& groups, const std::vector<RunningCh
 RenderResult render_metropolis(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks) {
     const FilmSettings& film = scene.film();
     const Mix& mix = settings.mix;
-    RunControl control(settings, callbacks, static_cast<std::uint64_t>(mix.chain_length));
+    RunControl control(settings, callbacks, static_cast<std::uint64_t>(mix.chain_length),
+                       static_cast<std::uint64_t>(mix.chain_count));
     RenderResult result;
     RenderStatistics& statistics = result.statistics;
     warn_of_hindrances(mix, scene, statistics);
@@ -85,6 +86,7 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
     statistics.non_finite = bootstrap.non_finite;
     if (groups.empty()) {
         result.image = Image(film.crop_width, film.crop_height);
+        statistics.cpu_seconds = control.elapsed_cpu();
         statistics.warnings.push_back("no bootstrap path carries light: the image is black");
         return result;
     }
@@ -116,17 +118,14 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
 
     while (const std::uint64_t mutations = control.next_pass()) {
         parallel_for(chains.size(), [&](std::uint64_t i) { workers.local()->advance(chains[i], mutations); });
-        control.finished(mutations, static_cast<double>(chains.size()), count().total().mean_acceptance(), develop);
+        control.finished(mutations, count().total().mean_acceptance(), develop);
     }
 
     result.image = develop();
     report_b(groups, chains, RasterWindow(film).area(), statistics);
-    statistics.rounds = control.done();
-    statistics.mutations = control.done() * chains.size();
+    control.report(statistics);
     for (const auto& worker : workers) statistics.rays += worker->chart.tracer().rays();
     report(count(), applicable_strategies(mix, scene), statistics);
-    statistics.seconds_render = control.loop_seconds();
-    statistics.interrupted = control.stopped();
     return result;
 }
 

@@ -26,10 +26,13 @@ void check(bool valid, const char* message) {
 
 RenderSettings resolve(const Scene& scene, RenderSettings s) {
     const bool chains = s.integrator == Integrator::mmlt;
-    check(std::isfinite(s.seconds) && std::isfinite(s.mutations_per_pixel) && s.seconds >= 0 &&
-              s.mutations_per_pixel >= 0 && (s.seconds == 0 || s.mutations_per_pixel == 0),
-          "give either a time or a number of mutations (samples) per pixel, not both");
-    check(s.seconds > 0 || s.mutations_per_pixel > 0 || (chains && s.mix.chain_length > 0),
+    int limits = 0;
+    for (const double limit : {s.seconds, s.cpu_seconds, s.mutations_per_pixel}) {
+        check(std::isfinite(limit) && limit >= 0, "the length of a render must be finite and not negative");
+        limits += limit > 0;
+    }
+    check(limits <= 1, "give either a time or a number of mutations (samples) per pixel, not both");
+    check(limits == 1 || (chains && s.mix.chain_length > 0),
           "neither a time nor a number of mutations (samples) per pixel is given");
     Mix& mix = s.mix;
     if (mix.lengths.max == 0)
@@ -47,7 +50,7 @@ RenderSettings resolve(const Scene& scene, RenderSettings s) {
     if (const auto wrong = contradiction(applicable)) throw std::invalid_argument(wrong->message);
     const FilmSettings& film = scene.film();
     const double pixels = static_cast<double>(film.crop_width) * film.crop_height;
-    if (s.seconds > 0) mix.chain_length = 0;
+    if (s.seconds > 0 || s.cpu_seconds > 0) mix.chain_length = 0;
     if (s.mutations_per_pixel > 0)
         mix.chain_length =
             static_cast<std::int64_t>(std::min(9e18, std::ceil(s.mutations_per_pixel * pixels / mix.chain_count)));
@@ -60,13 +63,11 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Re
     // More threads than processors are allowed, as asked for.
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
-    const double cpu_before = cpu_seconds();
     RenderResult result = arena.execute([&] {
         return resolved.integrator == Integrator::mmlt ? render_metropolis(scene, resolved, callbacks)
                                                        : render_unbiased(scene, resolved, callbacks);
     });
     RenderStatistics& s = result.statistics;
-    s.cpu_seconds = cpu_seconds() - cpu_before;
     s.peak_memory_bytes = peak_memory_bytes();
     s.threads = threads;
     s.max_length = resolved.mix.lengths.max;

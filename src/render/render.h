@@ -18,10 +18,11 @@ enum class Integrator { path, bdpt, mmlt };
 
 struct RenderSettings {
     Integrator integrator = Integrator::mmlt;
-    // How long: at most one of the two is positive. Mutations (mmlt) or samples (path, bdpt) per pixel of the crop
-    // window; a run of a given count is repeatable bit for bit with any number of threads. Both 0: mutations of each
-    // chain as the mix says.
+    // How long: at most one of the three is positive. Wall-clock time; processor time of all threads; or mutations (mmlt)
+    // or samples (path, bdpt) per pixel of the crop window: a run of a given count is repeatable bit for bit with any
+    // number of threads. All 0: mutations of each chain as the mix says.
     double seconds = 0;
+    double cpu_seconds = 0;
     double mutations_per_pixel = 0;
     // How the chains of mmlt move. For path and bdpt: the seed and the lengths of paths.
     Mix mix = builtin_mix("mmlt");
@@ -38,10 +39,22 @@ struct Progress {
     double acceptance = -1;             // of all strategies; < 0: does not apply
 };
 
+// A render after a part of its length. Times are from its start, bootstrap included.
+struct Checkpoint {
+    double seconds = 0, cpu_seconds = 0;
+    std::uint64_t mutations = 0;  // or samples
+    Image image;
+};
+
 struct RenderCallbacks {
     std::function<void(const Progress&)> progress;
     std::function<void(const Image&)> preview;
     std::function<bool()> stop;  // true: finish the current pass and return
+    // Called once for each of the shares (ascending, below 1) of the render's length, as soon as a pass has reached it;
+    // not for a share that is reached in the same pass as the next one, nor for one within the last pass. The time that
+    // the call takes does not count.
+    std::vector<double> checkpoint_shares;
+    std::function<void(Checkpoint)> checkpoint;
 };
 
 struct StrategyStatistics {

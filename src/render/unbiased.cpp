@@ -30,9 +30,9 @@ RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings,
     // One sample of a unit falls into each cell of a grid over the window, at a random place.
     const int columns = static_cast<int>(std::ceil(window.size.x())),
               rows = static_cast<int>(std::ceil(window.size.y()));
-    const double per_unit = static_cast<double>(columns) * rows;
+    const std::uint64_t per_unit = static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows);
     const auto budget = static_cast<std::uint64_t>(std::ceil(settings.mutations_per_pixel));
-    RunControl control(settings, callbacks, budget);
+    RunControl control(settings, callbacks, budget, per_unit);
     tbb::enumerable_thread_specific<Worker> workers([&] {
         return Worker{make_sampler(scene, settings), RadianceFilm(film)};
     });
@@ -48,26 +48,23 @@ RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings,
     auto develop = [&] {
         RadianceFilm sum(film);
         for (const Worker& worker : workers) sum.merge(worker.film);
-        return sum.develop(1 / (per_unit * static_cast<double>(control.done())));
+        return sum.develop(1 / static_cast<double>(per_unit * control.done()));
     };
 
     while (const std::uint64_t units = control.next_pass()) {
         parallel_for(units * rows,
                      [&](std::uint64_t job) { sample_row(control.done() + job / rows, static_cast<int>(job % rows)); });
-        control.finished(units, per_unit, -1, develop);
+        control.finished(units, -1, develop);
     }
 
     RenderResult result;
     result.image = develop();
     RenderStatistics& s = result.statistics;
-    s.rounds = control.done();
-    s.mutations = static_cast<std::uint64_t>(per_unit) * control.done();
+    control.report(s);
     for (const Worker& worker : workers) {
         s.rays += worker.sampler->tracer().rays();
         s.non_finite += worker.sampler->non_finite();
     }
-    s.seconds_render = control.loop_seconds();
-    s.interrupted = control.stopped();
     return result;
 }
 

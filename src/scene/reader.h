@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct ReaderOptions {
     int width = 0, height = 0;                   // > 0: replaces the film's size
     bool override_crop = false;
     int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // in pixels, with override_crop
+    std::optional<ReconstructionFilter> filter;                   // replaces the film's
 };
 
 struct LoadedScene {

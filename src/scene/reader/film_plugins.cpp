@@ -88,6 +88,7 @@ void override_film(FilmSettings& film, const ReaderOptions& options, Context& co
         film.crop_height = options.crop_height;
         check_crop(film, scene);
     }
+    if (options.filter) film.filter = *options.filter;
 }
 
 }  // namespace

@@ -118,6 +118,7 @@ std::uint64_t hash_of(const Context& context, const ReaderOptions& o) {
     for (const int value :
          {o.width, o.height, static_cast<int>(o.override_crop), o.crop_x, o.crop_y, o.crop_width, o.crop_height})
         hash.add(static_cast<std::uint64_t>(value));
+    if (o.filter) hash.add(static_cast<std::uint64_t>(o.filter->type));
     return hash.value();
 }
 
