@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/phase.h"
+
 namespace keyhole {
 
 Chart::Chart(const Scene& scene, const CoordinateLayout& layout, TargetFunction target)
@@ -46,6 +48,7 @@ PathFailure Chart::trace_light(const PrimarySample& u) {
 }
 
 Evaluation Chart::evaluate(const PrimarySample& u) {
+    const PhaseScope phase(Phase::shading);
     t_ = u.t;
     s_ = u.s();
     Evaluation result;

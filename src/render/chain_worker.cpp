@@ -41,6 +41,7 @@ ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, con
 }
 
 void ChainWorker::advance(RunningChain& running, std::uint64_t mutations) {
+    const WorkScope work(Phase::other);
     FilmSink sink{films[running.group]};
     for (std::uint64_t i = 0; i < mutations; ++i) {
         const StepOutcome outcome = running.chain.step(mixture, running.rng, sink, diagnostics);

@@ -1,6 +1,7 @@
 // What one thread runs chains with.
 #pragma once
 
+#include "base/phase.h"
 #include "chain/metropolis.h"
 #include "chain/running_mean.h"
 #include "render/bootstrap.h"
@@ -25,7 +26,10 @@ std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scen
 
 struct FilmSink {
     MetropolisFilm& film;
-    void splat(const PssState& state, double weight) { film.splat(state.raster, state.splat * weight); }
+    void splat(const PssState& state, double weight) {
+        const PhaseScope phase(Phase::film);
+        film.splat(state.raster, state.splat * weight);
+    }
 };
 
 class ChainWorker {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/phase.h"
 #include "base/process.h"
 #include "render/metropolis.h"
 #include "render/unbiased.h"
@@ -57,17 +58,35 @@ RenderSettings resolve(const Scene& scene, RenderSettings s) {
     return s;
 }
 
+namespace {
+
+std::map<std::string, double> shares(const PhaseSampler::Counts& counts) {
+    double all = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        if (static_cast<Phase>(i) != Phase::idle) all += static_cast<double>(counts[i]);
+    std::map<std::string, double> result;
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        if (static_cast<Phase>(i) != Phase::idle && all > 0)
+            result[phase_names[i]] = static_cast<double>(counts[i]) / all;
+    return result;
+}
+
+}  // namespace
+
 RenderResult render(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks) {
     const RenderSettings resolved = resolve(scene, settings);
     const int threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
     // More threads than processors are allowed, as asked for.
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
+    std::optional<PhaseSampler> phases;
+    if (settings.sample_time_split) phases.emplace();
     RenderResult result = arena.execute([&] {
         return resolved.integrator == Integrator::mmlt ? render_metropolis(scene, resolved, callbacks)
                                                        : render_unbiased(scene, resolved, callbacks);
     });
     RenderStatistics& s = result.statistics;
+    if (phases) s.time_split = shares(phases->counts());
     s.peak_memory_bytes = peak_memory_bytes();
     s.threads = threads;
     s.max_length = resolved.mix.lengths.max;

@@ -29,6 +29,8 @@ struct RenderSettings {
     int threads = 0;  // 0: all
     // Seconds between previews; 0: none.
     double preview_every = 0;
+    // Fill in RenderStatistics::time_split, for less than 2% of the time.
+    bool sample_time_split = false;
 };
 
 struct Progress {
@@ -85,6 +87,8 @@ struct RenderStatistics {
     std::uint64_t non_finite = 0;           // NaN or infinite contributions: rejected, counted, and warned about
     std::uint64_t peak_memory_bytes = 0;
     bool interrupted = false;
+    // Shares of the threads' time by phase_names (base/phase.h), sampled every two milliseconds; without idle time.
+    std::map<std::string, double> time_split;
     std::vector<std::string> warnings;
 };
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/phase.h"
+
 namespace keyhole {
 namespace {
 
@@ -13,6 +15,7 @@ Vec2 draw2(Rng& rng) {
 }  // namespace
 
 void Sampler::splat(RadianceFilm& film, const Vec2& raster, const Spectrum& contribution) {
+    const PhaseScope phase(Phase::film);
     if (std::isfinite(contribution.sum()))
         film.splat(raster, contribution);
     else

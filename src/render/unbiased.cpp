@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/phase.h"
 #include "render/run_control.h"
 #include "render/samplers.h"
 
@@ -38,6 +39,7 @@ RenderResult render_unbiased(const Scene& scene, const RenderSettings& settings,
     });
 
     auto sample_row = [&](std::uint64_t unit, int row) {
+        const WorkScope work(Phase::shading);
         Worker& worker = workers.local();
         Rng rng(settings.mix.seed, unit * static_cast<std::uint64_t>(rows) + static_cast<std::uint64_t>(row));
         for (int column = 0; column < columns; ++column) {

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "base/phase.h"
 #include "scene/instance.h"
 #include "scene/shape.h"
 
@@ -28,12 +29,14 @@ class MeshShape;
 using EmbreeContext = RTCRayQueryContext;
 inline void init_context(EmbreeContext& context) { rtcInitRayQueryContext(&context); }
 inline void embree_intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& query) {
+    const PhaseScope phase(Phase::tracing);
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     arguments.context = &context;
     rtcIntersect1(scene, &query, &arguments);
 }
 inline void embree_occluded(RTCScene scene, EmbreeContext& context, RTCRay& query) {
+    const PhaseScope phase(Phase::tracing);
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
     arguments.context = &context;
@@ -43,9 +46,11 @@ inline void embree_occluded(RTCScene scene, EmbreeContext& context, RTCRay& quer
 using EmbreeContext = RTCIntersectContext;
 inline void init_context(EmbreeContext& context) { rtcInitIntersectContext(&context); }
 inline void embree_intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& query) {
+    const PhaseScope phase(Phase::tracing);
     rtcIntersect1(scene, &context, &query);
 }
 inline void embree_occluded(RTCScene scene, EmbreeContext& context, RTCRay& query) {
+    const PhaseScope phase(Phase::tracing);
     rtcOccluded1(scene, &context, &query);
 }
 #endif

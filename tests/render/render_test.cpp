@@ -134,6 +134,21 @@ TEST_P(Renders, TheTimeOfCheckpointsDoesNotCount) {
     EXPECT_LT(s.seconds_bootstrap + s.seconds_render, 1);
 }
 
+TEST_P(Renders, SaysWhatTheTimeGoesInto) {
+    const auto scene = own_scene("cornell-box", 64, 64);
+    RenderSettings settings;
+    settings.integrator = GetParam();
+    settings.cpu_seconds = 2;
+    settings.sample_time_split = true;
+    const std::map<std::string, double> split = render(*scene, settings).statistics.time_split;
+    double sum = 0;
+    for (const auto& [phase, share] : split) sum += share;
+    EXPECT_NEAR(sum, 1, 1e-12);
+    for (const char* phase : {"tracing", "shading"}) EXPECT_GT(split.at(phase), 0.1) << phase;
+    EXPECT_GT(split.at("film"), 0.001);
+    EXPECT_EQ(split.at("inversion"), 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Renders, testing::Values(Integrator::path, Integrator::bdpt, Integrator::mmlt),
                          [](const auto& test) {
                              return test.param == Integrator::path   ? "path"
