@@ -21,7 +21,7 @@ nlohmann-json3-dev|nlohmann JSON|nlohmann/json.hpp
 libcli11-dev|CLI11|CLI/CLI.hpp
 libtomlplusplus-dev|toml++ 3|toml++/toml.h
 librandom123-dev|Random123|Random123/philox.h
-libboost-dev|Boost (math, for the tests)|boost/math/special_functions/gamma.hpp
+libboost-dev|Boost (math)|boost/math/special_functions/gamma.hpp
 libgtest-dev|GoogleTest|gtest/gtest.h
 libgmock-dev|GoogleMock|gmock/gmock.h"
 

@@ -22,5 +22,7 @@ void add_diff_command(CLI::App& keyhole, Runner& runner);
 void add_info_command(CLI::App& keyhole, Runner& runner);
 void add_bench_command(CLI::App& keyhole, Runner& runner);
 void add_mixes_command(CLI::App& keyhole, Runner& runner);
+void add_compare_command(CLI::App& keyhole, Runner& runner);
+void add_sweep_command(CLI::App& keyhole, Runner& runner);
 
 }  // namespace keyhole

@@ -68,6 +68,8 @@ int run(int argc, char** argv) {
     keyhole.set_version_flag("--version", version_text(), "Print the versions of Keyhole and its libraries, and exit");
     keyhole.footer(footer);
     add_render_command(keyhole, runner);
+    add_compare_command(keyhole, runner);
+    add_sweep_command(keyhole, runner);
     add_diff_command(keyhole, runner);
     add_info_command(keyhole, runner);
     add_bench_command(keyhole, runner);

@@ -10,20 +10,24 @@ Mix MixOptions::apply(Mix base) const {
     return base;
 }
 
-std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options) {
-    const auto set = [&options](const std::string& text) {
+CLI::Option* add_set_option(CLI::App& command, std::function<void(const Setting&)> take) {
+    const auto set = [take = std::move(take)](const std::string& text) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos || equals == 0)
             throw InputError({}, "'" + text + "' is not a setting; valid: KEY=VALUE, such as small-step.s2=0.05");
-        options.settings.push_back({text.substr(0, equals), text.substr(equals + 1), "--set"});
+        take({text.substr(0, equals), text.substr(equals + 1), "--set"});
     };
+    return add_parsed(command, "--set", "KEY=VALUE", set,
+                      "Change a key of the mix, such as small-step.s2=0.05, large-step.weight=0.3 or "
+                      "lengths.per-chain=fixed (repeatable)")
+        ->take_all();
+}
+
+std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options) {
     const auto mix = [&options](const std::string& text) { options.name = text; };
     return {add_parsed(command, "--mix", "NAME|FILE", mix,
                        "How the chains move: a mix that `keyhole mixes` lists, or a file (.toml) [default: mmlt]"),
-            add_parsed(command, "--set", "KEY=VALUE", set,
-                       "Change a key of the mix, such as small-step.s2=0.05, large-step.weight=0.3 or "
-                       "lengths.per-chain=fixed (repeatable)")
-                ->take_all()};
+            add_set_option(command, [&options](const Setting& s) { options.settings.push_back(s); })};
 }
 
 CLI::Option* add_mix_key(CLI::App& command, MixOptions& options, const std::string& name, const std::string& key,

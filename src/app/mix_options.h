@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct MixOptions {
     // The mix `base`, or the one of --mix in its place, with the settings. Throws InputError.
     Mix apply(Mix base) const;
 };
+
+// --set alone.
+CLI::Option* add_set_option(CLI::App& command, std::function<void(const Setting&)> take);
 
 // --mix and --set. `options` must live until the command line has been parsed.
 std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options);

@@ -8,6 +8,7 @@
 
 #include "app/version.h"
 #include "base/error.h"
+#include "base/hash.h"
 
 namespace keyhole {
 namespace {
@@ -66,7 +67,7 @@ std::string json_text(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string scene_hash(const Scene& scene) { return fmt::format("{:016x}", scene.content_hash()); }
+std::string scene_hash(const Scene& scene) { return hash_text(scene.content_hash()); }
 
 Json film_json(const FilmSettings& film) {
     return {{"width", film.width},

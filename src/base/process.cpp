@@ -1,10 +1,16 @@
 #include "base/process.h"
 
 #include <sys/resource.h>
+#include <sys/utsname.h>
 
 #include <ctime>
+#include <filesystem>
 #include <fstream>
-#include <string>
+#include <iterator>
+#include <sstream>
+#include <thread>
+
+#include "base/hash.h"
 
 namespace keyhole {
 
@@ -28,6 +34,56 @@ std::uint64_t peak_memory_bytes() {
 #else
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 #endif
+}
+
+namespace {
+
+std::string read_all(const char* filename) {
+    std::ifstream file(filename, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// "model name : AMD EPYC" gives "AMD EPYC".
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    return "";
+}
+
+std::string shell_word(const std::string& word) {
+    const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,/:@%";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+    return text + "'";
+}
+
+}  // namespace
+
+std::string machine_name() {
+    std::string name = processor_name();
+    if (!name.empty()) name += ", ";
+    name += std::to_string(std::thread::hardware_concurrency()) + " threads";
+    utsname system{};
+    if (uname(&system) == 0) name += std::string(", ") + system.sysname + " " + system.release + " " + system.machine;
+    return name;
+}
+
+std::string command_line() {
+    std::string text;
+    std::istringstream words(read_all("/proc/self/cmdline"));
+    for (std::string word; std::getline(words, word, '\0');)
+        text += text.empty() ? shell_word(std::filesystem::path(word).filename().string()) : " " + shell_word(word);
+    return text;
+}
+
+std::string program_hash() {
+    const std::string bytes = read_all("/proc/self/exe");
+    if (bytes.empty()) return "";
+    Hash hash;
+    hash.add(bytes);
+    return hash_text(hash.value());
 }
 
 }  // namespace keyhole

@@ -18,9 +18,9 @@ enum class Integrator { path, bdpt, mmlt };
 
 struct RenderSettings {
     Integrator integrator = Integrator::mmlt;
-    // How long: at most one of the three is positive. Wall-clock time; processor time of all threads; or mutations (mmlt)
-    // or samples (path, bdpt) per pixel of the crop window: a run of a given count is repeatable bit for bit with any
-    // number of threads. All 0: mutations of each chain as the mix says.
+    // How long: at most one of the three is positive. Wall-clock time; processor time of all threads; or mutations
+    // (mmlt) or samples (path, bdpt) per pixel of the crop window: a run of a given count is repeatable bit for bit
+    // with any number of threads. All 0: mutations of each chain as the mix says.
     double seconds = 0;
     double cpu_seconds = 0;
     double mutations_per_pixel = 0;
@@ -43,6 +43,7 @@ struct Progress {
 
 // A render after a part of its length. Times are from its start, bootstrap included.
 struct Checkpoint {
+    double share = 0;  // the largest of RenderCallbacks::checkpoint_shares that was reached
     double seconds = 0, cpu_seconds = 0;
     std::uint64_t mutations = 0;  // or samples
     Image image;

@@ -92,7 +92,8 @@ void RunControl::make_checkpoint(const std::function<Image()>& develop) {
     const double pause_start = elapsed(), pause_start_cpu = elapsed_cpu();
     do ++checkpoints_done_;
     while (checkpoints_done_ < callbacks_.checkpoint_shares.size() && used() >= next_checkpoint());
-    callbacks_.checkpoint({pause_start, pause_start_cpu, mutations(), develop()});
+    callbacks_.checkpoint(
+        {callbacks_.checkpoint_shares[checkpoints_done_ - 1], pause_start, pause_start_cpu, mutations(), develop()});
     paused_ += elapsed() - pause_start;
     paused_cpu_ += elapsed_cpu() - pause_start_cpu;
 }

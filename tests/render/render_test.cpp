@@ -96,6 +96,7 @@ TEST_P(Renders, ACheckpointIsTheImageOfAShorterRun) {
         RenderSettings part = settings;
         part.mutations_per_pixel *= callbacks.checkpoint_shares[i];
         const RenderResult shorter = render(*scene, part);
+        EXPECT_EQ(checkpoints[i].share, callbacks.checkpoint_shares[i]);
         EXPECT_EQ(checkpoints[i].mutations, shorter.statistics.mutations);
         EXPECT_EQ(checkpoints[i].image.rgb, shorter.image.rgb);
     }

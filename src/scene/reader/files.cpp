@@ -1,6 +1,5 @@
 #include "scene/reader/files.h"
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -48,26 +47,6 @@ std::string canonical_path(const std::string& filename) {
     std::error_code failure;
     const fs::path path = fs::weakly_canonical(filename, failure);
     return failure ? filename : path.string();
-}
-
-void Hash::add(const void* bytes, std::size_t size) {
-    const char* at = static_cast<const char*>(bytes);
-    mix(size);
-    for (; size >= 8; at += 8, size -= 8) {
-        std::uint64_t word;
-        std::memcpy(&word, at, 8);
-        mix(word);
-    }
-    std::uint64_t rest = 0;
-    std::memcpy(&rest, at, size);
-    if (size > 0) mix(rest);
-}
-
-std::uint64_t Hash::value() const {
-    std::uint64_t h = state_;  // the finaliser of MurmurHash3
-    h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
-    h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ull;
-    return h ^ (h >> 33);
 }
 
 }  // namespace keyhole
