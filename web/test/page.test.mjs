@@ -2,42 +2,17 @@
 // sample_report: small.html 96x54 with 3 entries, sweep.html with 6, bare.html with the
 // least that there can be, large.html 1280x720 with 12). Leaves screenshots in PAGES.
 import assert from "node:assert/strict";
-import {after, before, test} from "node:test";
-import {pathToFileURL} from "node:url";
+import {test} from "node:test";
 import {join} from "node:path";
 import {readFileSync} from "node:fs";
-import Ajv from "ajv/dist/2020.js";
-import {chromium} from "playwright-core";
+import {open_page, phone} from "./browser.mjs";
+import {validate} from "./schema.mjs";
 
 const folder = process.env.PAGES;
-const desktop = {width: 1280, height: 900}, phone = {width: 360, height: 740};
-let browser;
-
-before(async () => {
-    browser = await chromium.launch({
-        executablePath: process.env.CHROMIUM,
-        args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-               "--disable-component-update", "--disable-sync"],
-    });
+const on_page = (name, options, body) => open_page(join(folder, name), options, async (page) => {
+    if (name !== "bare.html") await page.locator("#viewer[data-ready=true]").waitFor();
+    await body(page);
 });
-after(() => browser?.close());
-
-// Opens a page, does `body` with it, and demands that nothing went wrong and nothing was asked of a network.
-async function on_page(name, options, body) {
-    const context = await browser.newContext({viewport: desktop, offline: true, ...options});
-    const page = await context.newPage(), wrong = [];
-    page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
-    page.on("pageerror", (error) => wrong.push(String(error)));
-    page.on("request", (request) => /^(file|data):/.test(request.url()) || wrong.push(`asked for ${request.url()}`));
-    try {
-        await page.goto(pathToFileURL(join(folder, name)).href);
-        if (name !== "bare.html") await page.locator("#viewer[data-ready=true]").waitFor();
-        await body(page);
-        assert.deepEqual(wrong, []);
-    } finally {
-        await context.close();
-    }
-}
 
 const state = (page) => page.locator("#viewer").evaluate((canvas) => ({...canvas.dataset}));
 
@@ -246,8 +221,6 @@ test("what is unknown is left out", () => on_page("bare.html", {}, async (page) 
 }));
 
 test("the results of all samples follow docs/results.schema.json", () => {
-    const schema = JSON.parse(readFileSync(new URL("../../docs/results.schema.json", import.meta.url), "utf8"));
-    const validate = new Ajv({allErrors: true, allowUnionTypes: true}).compile(schema);
     for (const name of ["small", "sweep", "bare"]) {
         const data = /id="data">(.*?)<\/script>/s.exec(readFileSync(join(folder, `${name}.html`), "utf8"))[1];
         const {results} = JSON.parse(data);
