@@ -43,6 +43,7 @@ class Comparison {
             entry.mix.chain_length = 0;  // the comparison says how long
             stores_.emplace_back(plan_.folder, entry.name, identity(entry, program));
         }
+        read_given_reference();
         for (const RunStore& store : stores_) done_.push_back(count_complete(store));
         refuse_or_discard_others();
         fs::create_directories(plan_.folder);
@@ -60,7 +61,7 @@ class Comparison {
         }
         ComparisonOutcome outcome;
         outcome.complete = next_entry() == stores_.size();
-        if (plan_.reference_file.empty() && reference.samples_per_pixel == 0) return outcome;  // stopped at once
+        if (!given_reference_ && reference.samples_per_pixel == 0) return outcome;  // stopped at once
         outcome.results = make_files(reference);
         for (const json& warning : outcome.results.at("warnings")) warn(warning);
         return outcome;
@@ -145,16 +146,19 @@ class Comparison {
         }
     }
 
-    Reference find_reference() const {
+    void read_given_reference() {
+        if (plan_.reference_file.empty()) return;
+        given_reference_ = read_reference(plan_.reference_file);
+        const Image& image = given_reference_->image;
         const FilmSettings& film = scene_.film();
-        if (!plan_.reference_file.empty()) {
-            Reference reference = read_reference(plan_.reference_file);
-            if (reference.image.width != film.crop_width || reference.image.height != film.crop_height)
-                throw InputError({plan_.reference_file},
-                                 fmt::format("is {}x{} pixels; the scene's film is {}x{}", reference.image.width,
-                                             reference.image.height, film.crop_width, film.crop_height));
-            return reference;
-        }
+        if (image.width != film.crop_width || image.height != film.crop_height)
+            throw InputError({plan_.reference_file},
+                             fmt::format("is {}x{} pixels; the scene's film is {}x{}", image.width, image.height,
+                                         film.crop_width, film.crop_height));
+    }
+
+    Reference find_reference() const {
+        if (given_reference_) return *given_reference_;
         ReferencePlan plan;
         plan.filename = file("reference.exr");
         plan.integrator = plan_.reference_integrator;
@@ -229,6 +233,7 @@ class Comparison {
             done += d;
         }
         Progress p = of_run;
+        p.rate = 0;  // mutations and samples in turn say little
         p.phase = fmt::format("run {}/{} {}", done_[e] + 1, plan_.runs, plan_.entries[e].name);
         p.fraction = (done + of_run.fraction) / all;
         p.elapsed = seconds_since(start_);
@@ -256,7 +261,8 @@ class Comparison {
     ComparisonPlan plan_;
     const ComparisonCallbacks& callbacks_;
     std::vector<RunStore> stores_;  // of the entries
-    std::vector<int> done_;         // complete runs of the entries
+    std::optional<Reference> given_reference_;
+    std::vector<int> done_;  // complete runs of the entries
     Clock::time_point start_ = Clock::now(), results_made_ = Clock::now();
     double results_seconds_ = 1;
     double seconds_of_runs_ = 0;
