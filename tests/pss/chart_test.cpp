@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "base/rng.h"
 #include "own_scenes.h"
 #include "pathspace/path.h"
@@ -43,52 +41,30 @@ double path_density(const PathDensities& d, int t) {
     return p;
 }
 
-struct Case {
-    const char* scene;
-    std::map<std::string, std::string> defines;
-};
-void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }
-
-class Charts : public testing::TestWithParam<Case> {};
+class Charts : public testing::TestWithParam<TransportCase> {};
 
 // Weights by the recurrence equal p_t / sum p_t' from whole products of densities (short paths: no overflow), and
 // C = f / sum p_t' whichever technique sampled the path. The tolerance covers the rounding of about 60 factors and of
 // directions that are normalised again from positions. Far in the tail of a narrow lobe the exponent amplifies those
 // without bound; such contributions are 1e-20 of the others and below, and are compared absolutely.
 TEST_P(Charts, ContributionAndWeightsDoNotDependOnTheTechnique) {
-    const auto scene = own_scene(GetParam().scene, 16, 16, GetParam().defines);
+    const auto scene = own_scene(GetParam(), 16, 16);
     const double tolerance = 1e-6, negligible = 1e-18;
-    const int found = for_sampled_paths(*scene, 60000, [&](const PrimarySample& u, const Path& path,
-                                                           const PathDensities& d, const Evaluation& e) {
-        double sum = 0;
-        for (int t = 1; t <= u.k + 1; ++t)
-            if (technique_exists(path, t)) sum += path_density(d, t);
-        ASSERT_TRUE(technique_exists(path, u.t));
-        const Spectrum expected = contribution(*scene, path) / sum;
-        for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(e.contribution[c], expected[c], tolerance * e.contribution.maxCoeff() + negligible)
-                << "k = " << u.k << ", t = " << u.t;
-    });
+    const int found = for_sampled_paths(
+        *scene, 60000, [&](const PrimarySample& u, const Path& path, const PathDensities& d, const Evaluation& e) {
+            double sum = 0;
+            for (int t = 1; t <= u.k + 1; ++t)
+                if (technique_exists(path, t)) sum += path_density(d, t);
+            ASSERT_TRUE(technique_exists(path, u.t));
+            const Spectrum expected = contribution(*scene, path) / sum;
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(e.contribution[c], expected[c], tolerance * e.contribution.maxCoeff() + negligible)
+                    << "k = " << u.k << ", t = " << u.t;
+        });
     EXPECT_GT(found, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(OwnScenes, Charts,
-                         testing::ValuesIn(std::vector<Case>{{"cornell-box", {}},
-                                                             {"keyhole-room", {{"hole", "0.4"}}},
-                                                             {"box-in-the-sun", {{"hole", "0.3"}}},
-                                                             {"glossy-room", {}},
-                                                             {"glass-caustic", {}},
-                                                             {"charted-toy", {{"hole", "0.1"}}},
-                                                             {"veil", {}},
-                                                             {"gallery", {}},
-                                                             {"stage", {}},
-                                                             {"three-planes", {{"hole", "0.3"}}},
-                                                             {"tree-reflector", {}}}),
-                         [](const auto& test) {
-                             std::string name = test.param.scene;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(OwnScenes, Charts, testing::ValuesIn(transport_cases()), test_name_of_case);
 
 }  // namespace
 }  // namespace keyhole

@@ -1,46 +1,21 @@
-// path, bdpt and mmlt converge to one image, on the project's own scenes, which together hold every BSDF, emitter, sensor
-// and texture of the reader.
+// path, bdpt and mmlt converge to one image, on the project's own scenes, which together hold every plugin of the
+// reader (tests/scene/own_scenes_test.cpp).
 #include "own_scenes.h"
 #include "render/replicates.h"
 
 namespace keyhole {
 namespace {
 
-// False-alarm level of the whole file. Each scene makes up to two comparisons.
+// False-alarm level of the whole file. Each scene makes two comparisons.
 constexpr double family_level = 1e-3;
 
-struct Case {
-    const char* scene;
-    std::map<std::string, std::string> defines;  // wider openings, so that path tracing converges as well
-    int max_length = 5;
-    bool path_finds_all = true;  // false: some light comes only from emitters without extent through delta lobes
-};
-
-void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }
-
-const Case cases[] = {
-    {"cornell-box", {}},
-    {"three-planes", {{"hole", "0.1"}}},
-    {"four-holes", {}},
-    {"keyhole-room", {{"hole", "0.4"}}},
-    {"ajar-door", {{"door", "60"}}},
-    {"box-in-the-sun", {{"hole", "0.3"}}},
-    {"blinds", {{"tilt", "30"}}},
-    {"glossy-room", {}},
-    {"glass-caustic", {{"light", "0.5"}}},
-    {"charted-toy", {{"hole", "0.1"}}},
-    {"stage", {}},
-    {"gallery", {}},
-    {"veil", {}},
-};
-
-class Agrees : public testing::TestWithParam<Case> {};
+class Agrees : public testing::TestWithParam<TransportCase> {};
 
 TEST_P(Agrees, WithBidirectionalPathTracing) {
-    const Case& c = GetParam();
-    const auto scene = own_scene(c.scene, 12, 12, c.defines);
+    const TransportCase& c = GetParam();
+    const auto scene = own_scene(c, 12, 12);
     constexpr int runs = 12;
-    const double level = sidak_level(family_level, 2 * static_cast<int>(std::size(cases)));
+    const double level = sidak_level(family_level, 2 * static_cast<int>(transport_cases().size()));
 
     RenderSettings settings;
     settings.mix.lengths.max = c.max_length;
@@ -53,16 +28,14 @@ TEST_P(Agrees, WithBidirectionalPathTracing) {
     settings.mutations_per_pixel = 4000;
     settings.mix.chain_count = 64;
     settings.mix.bootstrap_samples = 40000;
-    expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, std::string(c.scene) + "-mmlt");
+    expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, c.scene + "-mmlt");
 
-    if (!c.path_finds_all) return;
     settings.integrator = Integrator::path;
     settings.mutations_per_pixel = 2000;
-    expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, std::string(c.scene) + "-path");
+    expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, c.scene + "-path");
 }
 
-INSTANTIATE_TEST_SUITE_P(OwnScenes, Agrees, testing::ValuesIn(cases),
-                         [](const auto& test) { return test_name_of(test.param.scene); });
+INSTANTIATE_TEST_SUITE_P(OwnScenes, Agrees, testing::ValuesIn(transport_cases()), test_name_of_case);
 
 }  // namespace
 }  // namespace keyhole
