@@ -34,13 +34,6 @@ bool evaluate_end(const Vertex& v, Mode mode, const Vec3& d, End& end) {
     return !is_black(end.f);
 }
 
-// Where a shadow ray of the given length that arrives at x ends. The offset of x bounds the float error of rays that
-// start there; that of a ray from afar grows with its length.
-Vec3 target(const SurfacePoint& x, const Vec3& w, double length) {
-    constexpr double relative_error = 0x1p-20;  // 16 float roundings
-    return Scene::offset_origin(x, w) + std::copysign(relative_error * length, w.dot(x.ng)) * x.ng;
-}
-
 // s = 0: x_k lies on an emitter.
 Connection hit_emitter(const Scene& scene, std::span<const Vertex> eye) {
     Connection c;
@@ -88,7 +81,8 @@ Connection see_from_sensor(Tracer& tracer, const RasterWindow& window, const Sen
         c.failure = PathFailure::zero_bsdf;
         return c;
     }
-    if (!tracer.visible(view->o, target(y.x, d, (y.x.p - view->o).norm()))) {
+    // From the surface: the other end is on none, so that no error there counts.
+    if (!tracer.visible(Scene::offset_origin(y.x, d), view->o)) {
         c.failure = PathFailure::occluded;
         return c;
     }
@@ -118,8 +112,9 @@ Connection connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const Ve
     }
     const Vec3 o = Scene::offset_origin(x.x, d);
     const bool surface = emitter.traits().surface;
-    const bool seen =
-        y.infinite ? tracer.unoccluded({o, d}) : tracer.visible(o, surface ? target(y.x, -d, 1 / std::sqrt(inv_r2)) : y.x.p);
+    const bool seen = y.infinite
+                          ? tracer.unoccluded({o, d})
+                          : tracer.visible(o, surface ? Scene::offset_target(y.x, -d, 1 / std::sqrt(inv_r2)) : y.x.p);
     if (!seen) {
         c.failure = PathFailure::occluded;
         return c;
@@ -146,7 +141,7 @@ Connection connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::sp
         c.failure = PathFailure::zero_bsdf;
         return c;
     }
-    if (!tracer.visible(Scene::offset_origin(x.x, d), target(y.x, -d, 1 / std::sqrt(inv_r2)))) {
+    if (!tracer.visible(Scene::offset_origin(x.x, d), Scene::offset_target(y.x, -d, 1 / std::sqrt(inv_r2)))) {
         c.failure = PathFailure::occluded;
         return c;
     }

@@ -27,9 +27,8 @@ class Tracer {
     }
     // The open segment between two points, each offset from its surface.
     bool visible(const Vec3& a, const Vec3& b) {
-        const Vec3 d = b - a;
-        const double length = d.norm();
-        return length > 0 && unoccluded({a, d / length, 0, length});
+        const Ray ray = segment(a, b);
+        return ray.tfar > 0 && unoccluded(ray);
     }
 
     std::uint64_t rays() const { return rays_; }

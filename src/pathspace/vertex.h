@@ -32,7 +32,9 @@ struct Vertex {
     bool delta = false;                             // scatters by a delta lobe: cannot be connected
 };
 
-inline EmitterPoint emitter_point(const Vertex& v) { return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset}; }
+inline EmitterPoint emitter_point(const Vertex& v) {
+    return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset, v.x.offset_per_length};
+}
 
 // Whether shading and geometric side of a direction agree. Where they do not, every strategy rejects.
 inline bool same_side(double cos_geometric, double cos_shading) { return cos_geometric * cos_shading > 0; }

@@ -14,8 +14,8 @@ struct EmitterPoint {
     Vec3 p;   // position; at infinity: unit direction from the scene towards the emitter
     Vec3 ng;  // unit normal of an area emitter's surface, else zero
     Vec2 uv{0, 0};
-    double pdf = 0;    // density given the emitter: area; at infinity: solid angle; 1 where `delta`
-    float offset = 0;  // area emitters: bound of a ray query's float error at p, as a distance along ng
+    double pdf = 0;  // density given the emitter: area; at infinity: solid angle; 1 where `delta`
+    float offset = 0, offset_per_length = 0;  // area emitters: as SurfacePoint's
 };
 
 struct EmissionRay {
@@ -24,9 +24,9 @@ struct EmissionRay {
 };
 
 struct EmitterTraits {
-    bool infinite = false;  // endpoints are directions
-    bool delta = false;     // the endpoint's position (or, at infinity, direction) is fixed
-    bool surface = false;   // rays can hit it: area emitters
+    bool infinite = false;     // endpoints are directions
+    bool delta = false;        // the endpoint's position (or, at infinity, direction) is fixed
+    bool surface = false;      // rays can hit it: area emitters
     bool environment = false;  // rays that escape see it: constant and envmap
 };
 

@@ -35,15 +35,6 @@ bool Scene::unoccluded(const Ray& ray) const {
     return embree_->unoccluded({ray.o + ray.offset - origin_, ray.d, ray.tnear, ray.tfar});
 }
 
-// The float error at the far end grows with the coordinates of both ends, its offset only with its own: so the far end
-// is the one with the larger coordinates.
-bool Scene::unoccluded(const Vec3& a, const Vec3& b) const {
-    const bool swap = (b - origin_).squaredNorm() < (a - origin_).squaredNorm();
-    const Vec3& from = swap ? b : a;
-    const Vec3& to = swap ? a : b;
-    return embree_->unoccluded({from - origin_, to - from, 0, 1});
-}
-
 std::uint32_t Scene::choose_emitter(double u) const {
     if (emitters_.size() == 1) return 0;
     const auto found = std::upper_bound(emitter_cdf_.begin(), emitter_cdf_.end(), u);

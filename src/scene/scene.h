@@ -29,7 +29,7 @@ struct Requirements {
 };
 
 struct SceneStatistics {
-    std::size_t triangles = 0;            // as traced, instances multiplied
+    std::size_t triangles = 0;  // as traced, instances multiplied
     std::size_t unique_triangles = 0;
     std::size_t shapes = 0, instances = 0, emitters = 0, bsdfs = 0, textures = 0;
     std::size_t mesh_bytes = 0, texture_bytes = 0, embree_bytes = 0;
@@ -50,14 +50,17 @@ class Scene {
     bool intersect(const Ray& ray, SurfacePoint& x) const;
     // Whether the ray is free of surfaces within (tnear, tfar).
     bool unoccluded(const Ray& ray) const;
-    // Whether the open segment is. Ends on surfaces must be offset.
-    bool unoccluded(const Vec3& a, const Vec3& b) const;
 
-    // Rays that leave or reach a surface start and end off it by an error bound that scales with the coordinates.
-    // `w` points to the side the ray is on. Points that are on no surface stay where they are.
+    // Rays that leave a surface start, and segments that reach one end, off it by an error bound that scales with the
+    // coordinates. `w` points to the side the ray is on. Points that are on no surface stay where they are.
     static Vec3 offset_origin(const SurfacePoint& x, const Vec3& w) { return x.p + side(x.ng, w) * x.offset * x.ng; }
     static Vec3 offset_origin(const EmitterPoint& e, const Vec3& w) { return e.p + side(e.ng, w) * e.offset * e.ng; }
-    // The ray that leaves a surface along the unit direction `w`: tested from off it, with the exact origin for the hit.
+    // Where a ray of the given length that arrives from the direction `w` ends: before x by its own error.
+    static Vec3 offset_target(const SurfacePoint& x, const Vec3& w, double length) {
+        return x.p + side(x.ng, w) * (x.offset + x.offset_per_length * length) * x.ng;
+    }
+    // The ray that leaves a surface along the unit direction `w`: tested from off it, with the exact origin for the
+    // hit.
     static Ray ray_from(const SurfacePoint& x, const Vec3& w) {
         return {x.p, w, 0, std::numeric_limits<double>::infinity(), side(x.ng, w) * x.offset * x.ng};
     }

@@ -22,6 +22,13 @@ struct Ray {
     Vec3 offset{0, 0, 0};
 };
 
+// The open segment from a to b, which differ. Ends on surfaces must be offset (Scene).
+inline Ray segment(const Vec3& a, const Vec3& b) {
+    const Vec3 d = b - a;
+    const double length = d.norm();
+    return {a, d / length, 0, length};
+}
+
 struct Mesh {
     std::vector<Vec3f> positions;
     std::vector<Vec3f> normals;  // empty: face normals
@@ -34,7 +41,7 @@ struct Mesh {
 struct ShapeSample {
     Vec3 p, ng;
     Vec2 uv;
-    float offset = 0;  // as SurfacePoint::offset
+    float offset = 0, offset_per_length = 0;  // as SurfacePoint's
 };
 
 struct InstanceTransform;  // instance.h

@@ -10,14 +10,16 @@ class Bsdf;
 class Emitter;
 
 struct SurfacePoint {
-    Vec3 p;       // world position, on the surface to double precision
-    Vec3 ng;      // unit geometric normal, on the same side as frame.n
-    Frame frame;  // shading frame, frame.n the shading normal; frame.s along dp/du where `bsdf` needs tangents
+    Vec3 p;         // world position, on the surface to double precision
+    Vec3 ng;        // unit geometric normal, on the same side as frame.n
+    Frame frame;    // shading frame, frame.n the shading normal; frame.s along dp/du where `bsdf` needs tangents
     Vec2 uv{0, 0};  // filled only where `bsdf` or the emitter needs it
     // dp/du = du_s * s and dp/dv = dv_s * s + dv_t * t, projected into the shading frame's tangent plane.
     // Filled only where `bsdf` needs tangents.
     float du_s = 1, dv_s = 0, dv_t = 1;
-    float offset = 0;  // bound of a ray query's float error at p, as a distance along ng
+    // Bounds of a ray query's float error at p, as a distance along ng: of a ray that starts there, and what is to be
+    // added for one that ends there, per length.
+    float offset = 0, offset_per_length = 0;
     const Bsdf* bsdf = nullptr;
     const Emitter* emitter = nullptr;  // area emitter of the shape, if any
 };

@@ -129,7 +129,8 @@ TEST(Instances, HaveNoSelfHits) {
             if (!scene->intersect({scene->center() + 3 * scene->radius() * d, -d}, x)) continue;
             const Vec3 w = Frame::from_normal(x.ng).to_world(square_to_cosine_hemisphere(uniform2(rng)));
             returned += scene->intersect(Scene::ray_from(x, w), y);
-            shadowed += !scene->unoccluded(x.p + 4 * scene->radius() * w, Scene::offset_origin(x, w));
+            const double length = 4 * scene->radius();
+            shadowed += !scene->unoccluded(segment(x.p + length * w, Scene::offset_target(x, w, length)));
         }
         EXPECT_EQ(returned, 0) << transform.matrix();
         EXPECT_EQ(shadowed, 0) << transform.matrix();

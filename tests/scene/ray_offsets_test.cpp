@@ -4,6 +4,8 @@
 // closed box, every ray hits another face and any two points of different faces see each other.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "small_scenes.h"
@@ -53,9 +55,10 @@ void expect_no_return(const Scene& scene, const Vec3& middle, const char* name) 
         const Vec3 w = leaving_direction(x, false, rng);
         SurfacePoint y;
         returned += scene.intersect(Scene::ray_from(x, w), y);
-        const Vec3 far = x.p + 3 * scene.radius() * w;
-        shadowed +=
-            !scene.unoccluded(Scene::offset_origin(x, w), far) + !scene.unoccluded(far, Scene::offset_origin(x, w));
+        const double length = 3 * scene.radius();
+        const Vec3 far = x.p + length * w;
+        shadowed += !scene.unoccluded(segment(Scene::offset_origin(x, w), far)) +
+                    !scene.unoccluded(segment(far, Scene::offset_target(x, w, length)));
     }
     EXPECT_EQ(returned, 0) << name;
     EXPECT_EQ(shadowed, 0) << name;
@@ -100,10 +103,12 @@ TEST(RayOffsets, NothingEscapesFromAClosedBox) {
                 continue;
             }
             same_face += y.ng.dot(x.ng) > 0.9;
-            const Vec3 a = Scene::offset_origin(x, w), b = Scene::offset_origin(y, -w);
-            shadowed += !scene->unoccluded(a, b) || !scene->unoccluded(b, a);
+            const double length = (y.p - x.p).norm();
+            const Vec3 a = Scene::offset_origin(x, w);
+            shadowed += !scene->unoccluded(segment(a, Scene::offset_target(y, -w, length)));
+            shadowed += !scene->unoccluded(segment(Scene::offset_origin(y, -w), Scene::offset_target(x, w, length)));
             const Vec3 behind = y.p + 1e-2 * scene->radius() * y.ng;  // outward
-            unshadowed += scene->unoccluded(a, behind);
+            unshadowed += scene->unoccluded(segment(a, behind));
             x = y;
         }
         EXPECT_EQ(same_face, 0) << place.name;
@@ -111,6 +116,103 @@ TEST(RayOffsets, NothingEscapesFromAClosedBox) {
         std::printf("%-16s escaped %d, through a wall %d of %d\n", place.name, escaped, unshadowed, rays);
         EXPECT_LE(escaped, rays / 20000) << place.name;
         EXPECT_LE(unshadowed, rays / 20000) << place.name;
+    }
+}
+
+// A direction on the side of the unit vector n, its cosine between 1e-4 and 1, evenly in the logarithm.
+Vec3 often_grazing_direction(const Vec3& n, Rng& rng) {
+    const double cosine = std::pow(10, -4 * rng.uniform()), sine = std::sqrt(1 - cosine * cosine);
+    const double phi = 2 * pi * rng.uniform();
+    return Frame::from_normal(n).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
+}
+
+// Segments that end on a convex shape, from a tenth to a thousand times its radius away.
+struct Targets {
+    int shadowed = 0;
+    double largest_share = 0;  // of the offset that was needed
+};
+
+Targets look_at_targets(const Scene& scene, const Vec3& middle, int segments, Rng& rng) {
+    Targets result;
+    for (int i = 0; i < segments; ++i) {
+        const SurfacePoint x = random_point(scene, middle, false, rng);
+        const Vec3 w = often_grazing_direction(x.ng, rng);
+        const double length = scene.radius() * std::pow(10, -1 + 4 * rng.uniform());
+        const Vec3 from = x.p + length * w, offset = Scene::offset_target(x, w, length) - x.p;
+        const auto seen = [&](double share) { return scene.unoccluded(segment(from, x.p + share * offset)); };
+        result.shadowed += !seen(1);
+        if (seen(result.largest_share)) continue;
+        double enough = 1;
+        for (int step = 0; step < 10; ++step) {
+            const double middle_share = (result.largest_share + enough) / 2;
+            (seen(middle_share) ? enough : result.largest_share) = middle_share;
+        }
+    }
+    return result;
+}
+
+TEST(RayOffsets, SegmentsEndBeforeTheirTarget) {
+    for (const Placement& place : placements()) {
+        const ShapeOptions options = placed(place.transform);
+        Rng rng(5, 1);
+        const auto check = [&](SceneBuilder& builder, const char* shape) {
+            const auto scene = build_with_sensor(builder);
+            EXPECT_EQ(look_at_targets(*scene, place.transform.translation(), 20000, rng).shadowed, 0)
+                << shape << " " << place.name;
+        };
+        SceneBuilder cube, mesh, instance, sphere, disk;
+        cube.add_cube(options);
+        check(cube, "cube");
+        mesh.add_mesh(octasphere(2, false), options);
+        check(mesh, "mesh");
+        instance.begin_group("ball");
+        instance.add_mesh(octasphere(2, false), placed(similarity(0.4, 1, {0.1, 0.2, 0})));
+        instance.end_group();
+        instance.add_instance("ball", place.transform);
+        check(instance, "instance");
+        sphere.add_sphere({0, 0, 0}, 1, options);
+        check(sphere, "sphere");
+        disk.add_disk(options);
+        check(disk, "disk");
+    }
+}
+
+// The bound is a proof's worst case: that many roundings never all add up, but they come within a factor of ten.
+TEST(RayOffsets, AreNotMuchLargerThanTheErrorsAtTheTarget) {
+    double largest = 0;
+    for (const Placement& place : placements()) {
+        SceneBuilder plane;
+        plane.add_rectangle(placed(place.transform));
+        Rng rng(7, 1);
+        const auto scene = build_with_sensor(plane);
+        const Targets targets = look_at_targets(*scene, place.transform.translation(), 200000, rng);
+        EXPECT_EQ(targets.shadowed, 0) << place.name;
+        largest = std::max(largest, targets.largest_share);
+    }
+    std::printf("the largest error of a segment's end was %.3f of its bound\n", largest);
+    EXPECT_GT(largest, 0.1);
+    EXPECT_LT(largest, 0.25);
+}
+
+// Between the two skins of a box, a ten-thousandth of its size apart.
+TEST(RayOffsets, NoLightPassesAWallCloseToTheTarget) {
+    constexpr int segments = 100000;
+    for (const Placement& place : placements()) {
+        SceneBuilder builder;
+        builder.add_cube(placed(place.transform));
+        builder.add_cube(placed(place.transform * Affine(Eigen::UniformScaling<double>(1 - 1e-4))));
+        const auto scene = build_with_sensor(builder);
+        const Vec3 middle = place.transform.translation();
+        Rng rng(6, 1);
+        int lit = 0;
+        for (int i = 0; i < segments; ++i) {
+            SurfacePoint x = random_point(*scene, middle, true, rng);  // on the inner skin; seen from between both
+            const Vec3 w = leaving_direction(x, false, rng);  // rays along the skins leave at the edges of the box
+            const double length = scene->radius() * (2 + 8 * rng.uniform());
+            lit += scene->unoccluded(segment(x.p + length * w, Scene::offset_target(x, w, length)));
+        }
+        std::printf("%-16s lit through the wall %d of %d\n", place.name, lit, segments);
+        EXPECT_LE(lit, segments / 20000) << place.name;
     }
 }
 

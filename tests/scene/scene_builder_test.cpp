@@ -66,7 +66,7 @@ TEST(SceneBuilder, SceneWithoutAnythingIsEmpty) {
     SurfacePoint x;
     EXPECT_FALSE(scene->intersect({{0, 0, 0}, {0, 0, 1}}, x));
     EXPECT_FALSE(scene->intersect({{0, 0, 0}, {0, 0, 1}}).has_value());
-    EXPECT_TRUE(scene->unoccluded({0, 0, 0}, {0, 0, 1}));
+    EXPECT_TRUE(scene->unoccluded(segment({0, 0, 0}, {0, 0, 1})));
     EXPECT_TRUE(scene->emitters().empty());
     EXPECT_GT(scene->radius(), 0);
     EXPECT_EQ(scene->environment(), nullptr);

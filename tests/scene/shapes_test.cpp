@@ -149,8 +149,8 @@ TEST_P(Shapes, UnoccludedAgreesWithIntersect) {
         ASSERT_NE(hit, scene->unoccluded(ray));
         if (!hit) continue;
         const double t = (x.p - ray.o).norm();
-        ASSERT_TRUE(scene->unoccluded(ray.o, ray.o + 0.999 * t * ray.d));
-        ASSERT_FALSE(scene->unoccluded(ray.o, ray.o + 1.001 * t * ray.d));
+        ASSERT_TRUE(scene->unoccluded(segment(ray.o, ray.o + 0.999 * t * ray.d)));
+        ASSERT_FALSE(scene->unoccluded(segment(ray.o, ray.o + 1.001 * t * ray.d)));
         ASSERT_TRUE(scene->unoccluded({ray.o, ray.d, 0, 0.999 * t}));
     }
 }

@@ -33,7 +33,7 @@ class AreaEmitter final : public Emitter {
 
     EmitterPoint sample_point(double u_part, const Vec2& u) const override {
         const ShapeSample s = shape_.sample(u_part, u);
-        return {s.p + shape_.origin, s.ng, s.uv, pdf_area_, s.offset + origin_rounding_};
+        return {s.p + shape_.origin, s.ng, s.uv, pdf_area_, s.offset + origin_rounding_, s.offset_per_length};
     }
     double pdf_point(const EmitterPoint&) const override { return pdf_area_; }
 

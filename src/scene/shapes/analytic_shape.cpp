@@ -13,10 +13,13 @@ namespace {
 
 // Error of p as computed in double precision and transformed back and forth, with a wide margin: still nothing beside
 // a float's. Queries are decided in double precision, so it need not cover their rounding to float.
-float offset_bound(const Vec3& p_local, const Vec3& p_world, const Affine& to_world, const Affine& to_local) {
-    const double local = p_local.lpNorm<1>() + (to_local.linear().cwiseAbs() * p_world.cwiseAbs()).sum() +
+template <class Point>
+void set_offset(const Vec3& p_local, const Affine& to_world, const Affine& to_local, Point& x) {
+    const double local = p_local.lpNorm<1>() + (to_local.linear().cwiseAbs() * x.p.cwiseAbs()).sum() +
                          to_local.translation().lpNorm<1>();
-    return static_cast<float>(0x1p-46 * (p_world.lpNorm<1>() + to_world.linear().cwiseAbs().sum() * local));
+    const double scale = to_world.linear().cwiseAbs().sum();
+    x.offset = static_cast<float>(0x1p-46 * (x.p.template lpNorm<1>() + scale * local));
+    x.offset_per_length = static_cast<float>(0x1p-46 * (1 + scale * to_local.linear().cwiseAbs().sum()));
 }
 
 }  // namespace
@@ -63,7 +66,7 @@ double AnalyticShape::fill_under(const Ray& ray, const ShapeHit& hit, const Affi
     x.p = to_world * local.p;
     x.ng = (to_local.linear().transpose() * local.n).normalized();
     if (flip_normals) x.ng = -x.ng;
-    x.offset = offset_bound(local.p, x.p, to_world, to_local);
+    set_offset(local.p, to_world, to_local, x);
     if (!needs_uv && !needs_tangents) {
         x.frame = Frame::from_normal(x.ng);
         return t;
@@ -78,8 +81,9 @@ ShapeSample AnalyticShape::sample(double /*u_primitive*/, const Vec2& u) const {
     const Point local = project(sample_local(u));
     const Vec3 p = to_world_ * local.p;
     const Vec3 n = (to_local_.linear().transpose() * local.n).normalized();
-    return {p, flip_normals ? Vec3(-n) : n, needs_uv ? parameters(local.p).uv : Vec2(0, 0),
-            offset_bound(local.p, p, to_world_, to_local_)};
+    ShapeSample s{p, flip_normals ? Vec3(-n) : n, needs_uv ? parameters(local.p).uv : Vec2(0, 0)};
+    set_offset(local.p, to_world_, to_local_, s);
+    return s;
 }
 
 std::pair<Vec3, Vec3> AnalyticShape::bounds() const {

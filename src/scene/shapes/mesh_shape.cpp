@@ -16,6 +16,11 @@ constexpr double float_ulp = 0x1p-24;  // largest relative rounding error of a f
 
 Vec3 lift(const Vec3f& v) { return v.cast<double>(); }
 
+// A ray that ends on a plane is tested against it from afar, with coordinates that are larger by the ray D. By the
+// worst case below that adds weight.(20 |D|): 1 for the rounding of its origin, 8 for the products with what points
+// from there to the triangle, 11 for those with its direction and for its length.
+constexpr float target_share = 20 / 16.f;
+
 // Of a product e1 x e2: the sum of the magnitudes that each component is the difference of.
 Vec3 cross_magnitude(const Vec3& e1, const Vec3& e2) {
     const Vec3 a = e1.cwiseAbs(), b = e2.cwiseAbs();
@@ -101,11 +106,8 @@ void MeshShape::make_planes() {
         const Vec3 cross = f.cross();
         const double length = cross.norm();
         const Vec3 n = cross / length, weight = f.error_weight(length);
-        // fill() puts points back onto the plane but for 2^-53 of the way, itself 2^-51 of the ray's coordinates: beside
-        // a plane coordinate next to zero that is not small. Good for coordinates up to 2^14 times the triangle's.
-        const double put_back = 0x1p-90 * (f.v0.cwiseAbs() + f.extent()).sum();
         planes_.push_back(
-            {n, n.dot(f.v0), (16 * weight).cast<float>(), static_cast<float>(8 * weight.dot(f.extent()) + put_back)});
+            {n, n.dot(f.v0), (16 * weight).cast<float>(), static_cast<float>(8 * weight.dot(f.extent()))});
     }
 }
 
@@ -140,8 +142,9 @@ double MeshShape::fill(const Ray& ray, const ShapeHit& hit, SurfacePoint& x) con
     if (!hit.instance) [[likely]] {
         const Plane& plane = planes_[hit.primitive];
         x.offset = plane.bound.dot(x.p.cast<float>().cwiseAbs()) + plane.bound0;
+        x.offset_per_length = target_share * plane.bound.sum();
     } else {
-        x.offset = instance_offset(hit.primitive, *hit.instance, x.p);
+        set_instance_offset(hit.primitive, *hit.instance, x);
     }
     if (normals_.empty() && !needs_uv && !needs_tangents) {
         if (flip_normals) x.ng = -x.ng;
@@ -153,14 +156,18 @@ double MeshShape::fill(const Ray& ray, const ShapeHit& hit, SurfacePoint& x) con
 }
 
 // Embree transforms the ray to the instance's space in float and tests it there.
-float MeshShape::instance_offset(std::uint32_t primitive, const InstanceTransform& instance, const Vec3& p) const {
+void MeshShape::set_instance_offset(std::uint32_t primitive, const InstanceTransform& instance, SurfacePoint& x) const {
     const Triangle f = triangle(primitive, nullptr);
     const Vec3 cross = f.cross();
     const double length = cross.norm();
-    const Vec3 magnitude = instance.magnitude * (p.cwiseAbs() + instance.to_world.translation().cwiseAbs());
-    const double local =
-        f.error_weight(length).dot(16 * ((instance.to_local * p).cwiseAbs() + magnitude) + 8 * f.extent());
-    return static_cast<float>(local / (instance.normal * cross / length).norm());
+    const Vec3 magnitude = instance.magnitude * (x.p.cwiseAbs() + instance.to_world.translation().cwiseAbs());
+    const Vec3 weight = f.error_weight(length);
+    const double to_world = 1 / (instance.normal * cross / length).norm();
+    const double local = weight.dot(16 * ((instance.to_local * x.p).cwiseAbs() + magnitude) + 8 * f.extent());
+    const double local_per_length =
+        (weight.transpose() * (instance.to_local.linear().cwiseAbs() + instance.magnitude)).sum();
+    x.offset = static_cast<float>(local * to_world);
+    x.offset_per_length = static_cast<float>(16 * target_share * local_per_length * to_world);
 }
 
 // x.ng is the triangle's; the shading normal decides its side.
@@ -182,8 +189,8 @@ void MeshShape::set_frame(const ShapeHit& hit, SurfacePoint& x) const {
     }
 }
 
-// False where the vertex normals cancel. Under an instance they are normalised before they are interpolated, as those of
-// a copy under the same transform are: whether a mesh is copied or instanced does not show.
+// False where the vertex normals cancel. Under an instance they are normalised before they are interpolated, as those
+// of a copy under the same transform are: whether a mesh is copied or instanced does not show.
 bool MeshShape::shading_normal(std::uint32_t primitive, const InstanceTransform* instance, const Vec2& b,
                                Vec3& n) const {
     const auto& index = triangles_[primitive];
@@ -244,6 +251,7 @@ ShapeSample MeshShape::sample(double u_primitive, const Vec2& u) const {
     const Vec2 b = square_to_triangle(u);
     ShapeSample s{f.v0 + b.x() * f.e1 + b.y() * f.e2, plane.n, needs_uv ? uv(primitive, b) : Vec2(0, 0)};
     s.offset = plane.bound.dot(s.p.cast<float>().cwiseAbs()) + plane.bound0;
+    s.offset_per_length = target_share * plane.bound.sum();
     Vec3 n;
     const bool smooth = !normals_.empty() && shading_normal(primitive, nullptr, b, n);
     if (smooth ? n.dot(s.ng) < 0 : flip_normals) s.ng = -s.ng;

@@ -47,7 +47,7 @@ class MeshShape final : public Shape {
     void collapse_degenerate_triangles();
     void make_planes();
     Triangle triangle(std::uint32_t primitive, const InstanceTransform* instance) const;
-    float instance_offset(std::uint32_t primitive, const InstanceTransform& instance, const Vec3& p) const;
+    void set_instance_offset(std::uint32_t primitive, const InstanceTransform& instance, SurfacePoint& x) const;
     bool shading_normal(std::uint32_t primitive, const InstanceTransform* instance, const Vec2& b, Vec3& n) const;
     Vec2 uv(std::uint32_t primitive, const Vec2& b) const;
     void set_frame(const ShapeHit& hit, SurfacePoint& x) const;
