@@ -45,8 +45,11 @@ struct MeshShape::Triangle {
     // weight.(16 |p| + 8 |p - v0|): the worst case of the rounding of the ray's origin and direction, of the edges, of
     // their cross product (ill conditioned for slivers: beyond a factor of 64 the sliver is too thin for its error to
     // show) and of the dot products with it. Components stay apart, so that axis-aligned planes have small bounds.
+    // They have a floor, small beside a float's error, for planes next to zero: there a point that was computed along a
+    // ray, and another sheet in the same plane, is off by more than the bound.
     Vec3 error_weight(double length) const {
-        return float_ulp / length * cross_magnitude(e1, e2).cwiseMin(64 * length);
+        constexpr double floor = 0x1p-20;
+        return float_ulp / length * cross_magnitude(e1, e2).cwiseMax(floor * length).cwiseMin(64 * length);
     }
     Vec3 extent() const { return e1.cwiseAbs().cwiseMax(e2.cwiseAbs()); }
 };
