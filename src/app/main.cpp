@@ -1,6 +1,8 @@
 // The `keyhole` command.
+#include <fcntl.h>
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -88,12 +90,21 @@ int run(int argc, char** argv) {
     return runner();
 }
 
+// The first file that is opened would otherwise become the stream that was closed, and messages end up in it.
+void open_standard_streams() {
+    for (const int stream : {0, 1, 2})
+        if (fcntl(stream, F_GETFD) == -1) open("/dev/null", O_RDWR);
+}
+
 }  // namespace
 }  // namespace keyhole
 
 int main(int argc, char** argv) {
+    keyhole::open_standard_streams();
     try {
-        return keyhole::run(argc, argv);
+        const int code = keyhole::run(argc, argv);
+        if (code != 0 || std::fflush(stdout) == 0) return code;
+        keyhole::print_error("cannot write to the standard output");
     } catch (const keyhole::InputError& e) {
         keyhole::print_error(e.what());
         return keyhole::exit_bad_input;

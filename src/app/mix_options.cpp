@@ -5,7 +5,7 @@
 namespace keyhole {
 
 Mix MixOptions::apply(Mix base) const {
-    if (!name.empty()) base = find_mix(name);
+    if (name) base = find_mix(*name);
     apply_settings(base, settings);
     return base;
 }

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,8 @@
 namespace keyhole {
 
 struct MixOptions {
-    std::string name;               // --mix: a built-in mix or a file; empty: not given
-    std::vector<Setting> settings;  // in the order of the command line
+    std::optional<std::string> name;  // --mix: a built-in mix or a file
+    std::vector<Setting> settings;    // in the order of the command line
 
     // The mix `base`, or the one of --mix in its place, with the settings. Throws InputError.
     Mix apply(Mix base) const;

@@ -11,6 +11,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The name, or the first of NAME-1, NAME-2, ... that no file has.
+fs::path free_name(const fs::path& name) {
+    fs::path free = name;
+    for (int i = 1; fs::exists(free); ++i)
+        free.replace_filename(name.stem().string() + "-" + std::to_string(i) + name.extension().string());
+    return free;
+}
+
 // Runs `write` on the file, else on one of the same name in the temporary folder. Returns what went wrong.
 std::string write_or_rescue(const std::string& filename, const std::function<void(const std::string&)>& write) {
     try {
@@ -19,9 +27,9 @@ std::string write_or_rescue(const std::string& filename, const std::function<voi
     } catch (const std::exception& e) {
         std::string message = e.what();
         try {
-            const std::string rescue = (fs::temp_directory_path() / fs::path(filename).filename()).string();
-            write(rescue);
-            return message + "; it was written to '" + rescue + "' instead";
+            const fs::path rescue = free_name(fs::temp_directory_path() / fs::path(filename).filename());
+            write(rescue.string());
+            return message + "; it was written to '" + rescue.string() + "' instead";
         } catch (const std::exception& second) {
             return message + "; " + second.what();
         }

@@ -12,6 +12,9 @@ double cpu_seconds();
 // The largest amount of memory this process has held at once (resident), in bytes; 0 if the system does not say.
 std::uint64_t peak_memory_bytes();
 
+// The machine's memory in bytes; 0 if the system does not say.
+std::uint64_t physical_memory_bytes();
+
 // The machine as a person would name it: processor, number of threads, system.
 std::string machine_name();
 

@@ -20,6 +20,8 @@ __extension__ using Int128 = __int128;
 template <class Word, int FractionBits>
 class FixedPointFilm {
   public:
+    static constexpr std::size_t bytes_per_pixel = 3 * sizeof(Word);
+
     explicit FixedPointFilm(const FilmSettings& settings)
         : settings_(settings), pixels_(static_cast<std::size_t>(settings.crop_width) * settings.crop_height) {}
 

@@ -1,5 +1,6 @@
 #include "render/render.h"
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
@@ -9,6 +10,9 @@
 
 #include "base/phase.h"
 #include "base/process.h"
+#include "base/units.h"
+#include "pss/layout.h"
+#include "render/film.h"
 #include "render/metropolis.h"
 #include "render/unbiased.h"
 
@@ -21,6 +25,24 @@ constexpr std::int64_t default_bootstrap_samples = 262144;
 
 void check(bool valid, const char* message) {
     if (!valid) throw std::invalid_argument(message);
+}
+
+// Refuses what surely does not fit: the system would end the program while it fills its memory, without a word.
+void check_memory(const Scene& scene, const RenderSettings& s, int threads) {
+    const bool chains = s.integrator == Integrator::mmlt;
+    const double pixels = static_cast<double>(scene.film().crop_width) * scene.film().crop_height;
+    const std::size_t film = chains ? MetropolisFilm::bytes_per_pixel : RadianceFilm::bytes_per_pixel;
+    const double films = pixels * static_cast<double>(film) * threads;
+    const CoordinateLayout layout(scene, s.mix.lengths.max);
+    const auto coordinates = static_cast<std::size_t>(layout.eye_capacity() + layout.light_capacity());
+    const double states = chains ? 2.0 * s.mix.chain_count * static_cast<double>(coordinates * sizeof(double)) : 0;
+    const std::uint64_t memory = physical_memory_bytes();
+    if (memory == 0 || films + states <= static_cast<double>(memory)) return;
+    const auto bytes = [](double b) { return format_bytes(static_cast<std::uint64_t>(std::min(b, 1e19))); };
+    throw std::runtime_error(
+        fmt::format("too little memory: the films of {} threads take {} and the chains {}; this "
+                    "machine has {}",
+                    threads, bytes(films), bytes(states), format_bytes(memory)));
 }
 
 }  // namespace
@@ -76,6 +98,7 @@ std::map<std::string, double> shares(const PhaseSampler::Counts& counts) {
 RenderResult render(const Scene& scene, const RenderSettings& settings, const RenderCallbacks& callbacks) {
     const RenderSettings resolved = resolve(scene, settings);
     const int threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
+    check_memory(scene, resolved, threads);
     // More threads than processors are allowed, as asked for.
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);

@@ -1,10 +1,13 @@
 // What the command does with options, scenes and outputs that are not valid: says what would have been, and writes
 // nothing.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <filesystem>
 
 #include "harness.h"
+#include "render/image.h"
 
 namespace keyhole {
 namespace {
@@ -26,7 +29,7 @@ struct BadOption {
 TEST_F(BadInput, OptionsAreRefusedWithWhatIsValid) {
     const std::vector<BadOption> cases = {
         {{}, "no command given"},
-        {{"rendr", "room.xml"}, "unknown command 'rendr'; did you mean 'render'? valid names: render, diff, info"},
+        {{"rendr", "room.xml"}, "unknown command 'rendr'; did you mean 'render'? valid names: render, compare, sweep, diff, info"},
         {{"render"}, "SCENE is required"},
         {{"render", "room.xml", "--tim", "5s"}, "unknown option '--tim'; did you mean '--time'? valid names: "},
         {{"render", "room.xml", "extra.xml"}, "one argument too many: 'extra.xml'"},
@@ -53,6 +56,10 @@ TEST_F(BadInput, OptionsAreRefusedWithWhatIsValid) {
         {{"render", "room.xml", "-q", "-v"}, "excludes"},
         {{"render", "room.xml", "-o", "a.jpg"}, "'a.jpg' has the unknown extension '.jpg'; valid extensions: .exr"},
         {{"render", "room.xml", "-o", "a"}, "'a' has no extension; valid extensions: .exr"},
+        {{"render", "room.xml", "--mix", ""}, "valid names: mmlt"},
+        {{"render", ""}, "SCENE is required"},
+        {{"render", "."}, "'.' is not a file"},
+        {{"info", "/dev/null"}, "'/dev/null' is not a file"},
         {{"render", "missing.xml"}, "missing.xml"},
         {{"info", "missing.xml"}, "missing.xml"},
         {{"diff", "room.xml"}, "REFERENCE is required"},
@@ -86,6 +93,38 @@ TEST_F(BadInput, OutputsThatCannotBeWrittenAreFoundBeforeRendering) {
         EXPECT_THAT(done.err, HasSubstr(message));
         EXPECT_THAT(files(), ElementsAre("folder.exr", "plain", "room.xml"));
     }
+}
+
+// Not by the system while the program fills the memory.
+TEST_F(BadInput, WhatNoMemoryHoldsIsRefused) {
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"--chains", "1000000000"},
+          {"--size", "65536x65536", "--threads", "4096"},
+          {"--size", "65536x65536", "--threads", "4096", "--integrator", "bdpt"}}) {
+        std::vector<std::string> arguments = {"render", "room.xml", "-n", "4", "-o", "a.exr", "--max-length", "200"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Finished done = run(arguments);
+        EXPECT_EQ(done.exit_code, 1) << more[1];
+        EXPECT_THAT(done.err, HasSubstr("too little memory: the films of ")) << more[1];
+        EXPECT_THAT(files(), ElementsAre("room.xml"));
+    }
+}
+
+TEST_F(BadInput, AFullDiskUnderTheStandardOutputIsAFailure) {
+    Process process(folder(), {"info", "room.xml"}, [] { dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO); });
+    const Finished done = process.wait();
+    EXPECT_EQ(done.exit_code, 1);
+    EXPECT_THAT(done.err, HasSubstr("cannot write to the standard output"));
+}
+
+// The messages must not end up in a file that has got the number of a closed stream.
+TEST_F(BadInput, ClosedStandardStreamsDoNoHarm) {
+    Process process(folder(), quick_render("room.xml", {"-o", "a.exr", "-v"}), [] {
+        for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) close(stream);
+    });
+    EXPECT_EQ(process.wait().exit_code, 0);
+    EXPECT_EQ(read_image(path("a.exr").string()).width, 16);
+    EXPECT_FALSE(json("a.json")["statistics"].empty());
 }
 
 TEST_F(BadInput, AnEarlierImageSurvivesABadScene) {

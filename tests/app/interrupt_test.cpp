@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 
 #include "harness.h"
 #include "render/image.h"
@@ -109,6 +110,7 @@ TEST_F(InterruptedRender, SurvivesAReaderThatHasGone) {
 TEST_F(InterruptedRender, ImageIsRescuedWhenItsFolderVanishes) {
     fs::create_directory(path("out"));
     fs::create_directory(path("tmp"));
+    std::ofstream(path("tmp/a.exr")) << "somebody else's";
     auto arguments = long_render();
     arguments[3] = "out/a.exr";
     Process process(folder(), arguments, [this] { setenv("TMPDIR", path("tmp").c_str(), 1); });
@@ -118,8 +120,8 @@ TEST_F(InterruptedRender, ImageIsRescuedWhenItsFolderVanishes) {
     process.signal(SIGINT);
     const Finished done = process.wait();
     EXPECT_EQ(done.exit_code, 1);
-    EXPECT_THAT(done.err, HasSubstr("it was written to '" + path("tmp/a.exr").string() + "' instead"));
-    EXPECT_EQ(read_image(path("tmp/a.exr").string()).width, 16);
+    EXPECT_THAT(done.err, HasSubstr("it was written to '" + path("tmp/a-1.exr").string() + "' instead"));
+    EXPECT_EQ(read_image(path("tmp/a-1.exr").string()).width, 16);
     EXPECT_EQ(json("tmp/a.json")["statistics"]["complete"], false);
 }
 

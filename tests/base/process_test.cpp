@@ -34,5 +34,7 @@ TEST(Process, PeakMemoryGrowsWithWhatIsTouched) {
     EXPECT_LT(peak_memory_bytes(), before + 4 * size);
 }
 
+TEST(Process, PhysicalMemoryHoldsThisProcess) { EXPECT_GT(physical_memory_bytes(), peak_memory_bytes()); }
+
 }  // namespace
 }  // namespace keyhole
