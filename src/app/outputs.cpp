@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 
 namespace keyhole {
 namespace {
@@ -45,13 +46,20 @@ std::string scene_name(const std::string& scene_filename) {
     return says_nothing && !folder.empty() ? folder : stem;
 }
 
-Outputs::Outputs(std::vector<std::string> names, const std::string& scene_filename, double exposure)
-    : images_(std::move(names)), exposure_(exposure) {
+Outputs::Outputs(std::vector<std::string> names, const std::string& scene_filename, double exposure,
+                 const std::string& error_image)
+    : images_(std::move(names)), error_image_(error_image), exposure_(exposure) {
     if (images_.empty()) images_.push_back(scene_name(scene_filename) + ".exr");
     report_ = fs::path(images_.front()).replace_extension(".json").string();
     for (const std::string& name : images_) image_format(name);
     for (const std::string& name : images_) check_writable(name);
     check_writable(report_);
+    if (error_image_.empty()) return;
+    if (image_format(error_image_) != "openexr")
+        throw InputError({}, "--error-image '" + error_image_ + "' must be .exr: standard errors are no colours");
+    if (std::find(images_.begin(), images_.end(), error_image_) != images_.end())
+        throw InputError({}, "--error-image and -o name the same file, '" + error_image_ + "'");
+    check_writable(error_image_);
 }
 
 WriteOptions Outputs::write_options(const Json& run) const {
@@ -66,7 +74,7 @@ void Outputs::write_preview(const Image& image, const Json& run) const {
     for (const std::string& name : images_) write_image(name, image, options);
 }
 
-std::vector<std::string> Outputs::write(const Image& image, const Json& run) const {
+std::vector<std::string> Outputs::write(const Image& image, const Image& error, const Json& run) const {
     std::vector<std::string> failures;
     const auto keep = [&failures](std::string message) {
         if (!message.empty()) failures.push_back(std::move(message));
@@ -74,6 +82,12 @@ std::vector<std::string> Outputs::write(const Image& image, const Json& run) con
     const WriteOptions options = write_options(run);
     for (const std::string& name : images_)
         keep(write_or_rescue(name, [&](const std::string& file) { write_image(file, image, options); }));
+    if (!error_image_.empty()) {
+        WriteOptions of_error = options;
+        of_error.metadata["keyhole:content"] =
+            "standard error of each value of the image, by the disagreement of independent replicates of the run";
+        keep(write_or_rescue(error_image_, [&](const std::string& file) { write_image(file, error, of_error); }));
+    }
     keep(write_or_rescue(report_, [&](const std::string& file) { write_file(file, json_text(run, 2) + "\n"); }));
     return failures;
 }

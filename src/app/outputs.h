@@ -13,23 +13,26 @@ class Outputs {
   public:
     // `names` as given with -o; none: the scene's name with .exr in the current folder. Throws InputError for unknown
     // extensions and std::runtime_error where no file can be written, so that a run does not find out at its end.
-    Outputs(std::vector<std::string> names, const std::string& scene_filename, double exposure);
+    // `error_image`: .exr, or empty for none.
+    Outputs(std::vector<std::string> names, const std::string& scene_filename, double exposure,
+            const std::string& error_image = "");
 
     const std::vector<std::string>& images() const { return images_; }
     const std::string& report() const { return report_; }
+    const std::string& error_image() const { return error_image_; }
 
     // Writes the images only: something to look at while the run goes on.
     void write_preview(const Image& image, const Json& run) const;
 
-    // Writes images and report. A file that cannot be written is written to the system's temporary folder instead.
-    // Returns what went wrong, one message per file.
-    std::vector<std::string> write(const Image& image, const Json& run) const;
+    // Writes images, their standard errors if they are asked for, and report. A file that cannot be written is written
+    // to the system's temporary folder instead. Returns what went wrong, one message per file.
+    std::vector<std::string> write(const Image& image, const Image& error, const Json& run) const;
 
   private:
     WriteOptions write_options(const Json& run) const;
 
     std::vector<std::string> images_;
-    std::string report_;
+    std::string report_, error_image_;
     double exposure_;
 };
 

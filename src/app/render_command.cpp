@@ -36,9 +36,26 @@ void print_strategies(const RenderStatistics& statistics) {
         std::string failures;
         for (const auto& [kind, count] : s.failures)
             failures += fmt::format("{}{} {}", failures.empty() ? "; failures: " : ", ", kind, count);
-        fmt::print("  {:<17} {:>8} proposals, {:5.1f}% accepted{}\n", s.name,
-                   format_count(static_cast<double>(s.proposals)), 100 * s.mean_acceptance, failures);
+        fmt::print(
+            "  {:<17} {:>8} proposals, {:5.1f}% accepted, at most {} effective samples of luminance, {} of "
+            "position{}\n",
+            s.name, format_count(static_cast<double>(s.proposals)), 100 * s.mean_acceptance,
+            format_count(s.luminance.effective_sample_size), format_count(s.position.effective_sample_size), failures);
     }
+}
+
+// What the disagreement of replicates says.
+void print_errors(const ErrorStatistics& e, bool verbose) {
+    if (e.replicates == 0) return;
+    fmt::print("blocks of the image (16x16) {:.2g}% standard error, by {} replicates; {} effective samples\n",
+               100 * e.blocks_relative, e.replicates, format_count(e.position.effective_sample_size));
+    if (!verbose) return;
+    fmt::print(
+        "autocorrelation time of luminance {:.3g} mutations, of position {:.3g}; standard error of the image's "
+        "mean {:.2g}\n",
+        e.luminance.autocorrelation_time, e.position.autocorrelation_time, e.image_mean);
+    fmt::print("b rests on {} effective paths, the five largest carry {:.2g}% of it\n", format_count(e.effective_paths),
+               100 * e.heaviest_share);
 }
 
 void print_summary(const RenderOptions& options, const Json& report, const RenderStatistics& s) {
@@ -53,6 +70,7 @@ void print_summary(const RenderOptions& options, const Json& report, const Rende
         options.settings.integrator != Integrator::mmlt || options.settings.mix.target == TargetFunction::luminance;
     fmt::print("mean {} {:.6g}, standard error {:.2g}\n", luminance ? "luminance" : "of the paths' largest channel",
                s.b, s.b_standard_error);
+    print_errors(s.errors, options.verbose);
     if (!options.verbose) return;
     fmt::print("{} rays/s, {} threads, {} CPU, peak memory {}\n",
                format_count(numbers.at("rays_per_second").get<double>()), s.threads, format_duration(s.cpu_seconds),
@@ -62,6 +80,7 @@ void print_summary(const RenderOptions& options, const Json& report, const Rende
 
 void print_files(const Outputs& outputs) {
     for (const std::string& name : outputs.images()) fmt::print("wrote {}\n", name);
+    if (!outputs.error_image().empty()) fmt::print("wrote {}\n", outputs.error_image());
     fmt::print("wrote {}\n", outputs.report());
 }
 
@@ -98,7 +117,7 @@ int run_render(const RenderOptions& options) {
     if (options.settings.threads > 0)
         threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                         static_cast<std::size_t>(options.settings.threads));
-    const Outputs outputs(options.outputs, options.scene.filename, options.exposure);
+    const Outputs outputs(options.outputs, options.scene.filename, options.exposure, options.error_image);
     LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
     for (std::string& warning : differences(options, *loaded.scene)) loaded.warnings.push_back(std::move(warning));
     const RenderSettings settings = resolve(*loaded.scene, options.settings);
@@ -122,7 +141,7 @@ int run_render(const RenderOptions& options) {
     add_statistics(report, settings, *loaded.scene, statistics);
     report["warnings"] = warnings;
     // Files first: whatever happens to the terminal, they are safe.
-    const std::vector<std::string> failures = outputs.write(result.image, report);
+    const std::vector<std::string> failures = outputs.write(result.image, result.error, report);
     for (const std::string& failure : failures) print_error(failure);
     if (!options.quiet) print_summary(options, report, statistics);
     if (!failures.empty()) return exit_failure;

@@ -21,7 +21,8 @@ struct RenderOptions {
     std::string like;                 // --like: an image or report
     std::optional<StoredRun> stored;  // what it says
     std::vector<std::string> outputs;
-    double exposure = 0;  // stops
+    double exposure = 0;      // stops
+    std::string error_image;  // --error-image; empty: none
     bool quiet = false, verbose = false;
 
     Verbosity verbosity() const { return quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal; }

@@ -47,7 +47,25 @@ Json strategy_json(const StrategyStatistics& s) {
             {"proposals", s.proposals},
             {"accepted", s.accepted},
             {"mean_acceptance", s.mean_acceptance},
-            {"failures", s.failures}};
+            {"failures", s.failures},
+            {"effective_sample_size", s.luminance.effective_sample_size},
+            {"autocorrelation_time", s.luminance.autocorrelation_time},
+            {"position_effective_sample_size", s.position.effective_sample_size},
+            {"position_autocorrelation_time", s.position.autocorrelation_time}};
+}
+
+Json errors_json(const ErrorStatistics& e) {
+    return {{"replicates", e.replicates},
+            {"image_mean_standard_error", e.image_mean},
+            {"blocks_relative_standard_error", e.blocks_relative},
+            {"effective_sample_size", e.luminance.effective_sample_size},
+            {"autocorrelation_time", e.luminance.autocorrelation_time},
+            {"position_effective_sample_size", e.position.effective_sample_size},
+            {"position_autocorrelation_time", e.position.autocorrelation_time},
+            {"disagreeing_light", e.disagreeing_light < 0 ? Json() : Json(e.disagreeing_light)},
+            {"b_effective_paths", e.effective_paths},
+            {"b_largest_share", e.heaviest_share},
+            {"blocks", {{"columns", 16}, {"rows", 16}, {"mean", e.block_means}, {"standard_error", e.block_errors}}}};
 }
 
 Json length_json(const LengthStatistics& s) {
@@ -139,6 +157,7 @@ void add_statistics(Json& report, const RenderSettings& settings, const Scene& s
     json["peak_memory_bytes"] = s.peak_memory_bytes;
     json["strategies"] = Json::array();
     for (const StrategyStatistics& strategy : s.strategies) json["strategies"].push_back(strategy_json(strategy));
+    if (s.errors.replicates > 0) json["errors"] = errors_json(s.errors);
     if (!s.lengths.empty()) json["lengths"] = Json::array();
     for (const LengthStatistics& length : s.lengths) json["lengths"].push_back(length_json(length));
     report["finished"] = utc_now();

@@ -42,6 +42,10 @@ class Chain {
     const State& proposed(const StepOutcome& outcome) const {
         return slots_[outcome.accepted ? current_ : 1 - current_];
     }
+    // The state that the last step started from.
+    const State& previous(const StepOutcome& outcome) const {
+        return slots_[outcome.accepted ? 1 - current_ : current_];
+    }
 
     // One step. Every step has the weight one: with the acceptance probability a, the current state gets 1 - a and the
     // proposed one a, whichever becomes the next. The current state's weight is held until it is left, so

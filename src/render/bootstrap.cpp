@@ -11,8 +11,8 @@
 namespace keyhole {
 namespace {
 
-// Share of large steps that chooses techniques by their prior, so that none is out of reach because the samples that the
-// fit is made from missed it.
+// Share of large steps that chooses techniques by their prior, so that none is out of reach because the samples that
+// the fit is made from missed it.
 constexpr double prior_share = 0.05;
 
 struct Worker {
@@ -53,14 +53,25 @@ void fit_techniques(Workers& workers, TechniqueDistribution& techniques, std::ui
     techniques.fit(energies, prior_share);
 }
 
+std::size_t replicate_of(std::size_t sample, std::size_t samples, std::size_t replicates) {
+    return sample * replicates / samples;
+}
+
 // The mean of the samples of each length (of all, where `lengths` holds zeros): given its length, a sample estimates b
 // of that length. Without the groups that found nothing.
 std::vector<ChainGroup> make_groups(const std::vector<double>& weights, const std::vector<std::uint16_t>& lengths,
-                                    const PathLengths& range) {
+                                    const PathLengths& range, std::size_t replicates) {
     std::vector<ChainGroup> groups(range.fixed ? range.max + 1 : 1);
-    for (std::size_t i = 0; i < groups.size(); ++i) groups[i].length = static_cast<int>(i);
-    for (std::size_t i = 0; i < weights.size(); ++i) groups[lengths[i]].b.add(weights[i]);
-    std::erase_if(groups, [](const ChainGroup& group) { return !(group.b.mean() > 0); });
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        groups[g].length = static_cast<int>(g);
+        groups[g].b.resize(replicates);
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        ChainGroup& group = groups[lengths[i]];
+        group.b[replicate_of(i, weights.size(), replicates)].add(weights[i]);
+        group.largest.add(weights[i]);
+    }
+    std::erase_if(groups, [](const ChainGroup& group) { return !(group.mean_b() > 0); });
     return groups;
 }
 
@@ -75,12 +86,18 @@ std::vector<std::size_t> share_chains(const std::vector<ChainGroup>& groups, std
     std::vector<std::size_t> counts(groups.size(), 1);
     if (groups.empty()) return counts;
     std::vector<double> shares;
-    for (const ChainGroup& group : groups) shares.push_back(group.b.mean());
+    for (const ChainGroup& group : groups) shares.push_back(group.mean_b());
     for (const std::size_t g : resample(shares, chains - groups.size(), 0.5)) ++counts[g];
     return counts;
 }
 
 }  // namespace
+
+double ChainGroup::mean_b() const {
+    RunningMean all;
+    for (const RunningMean& replicate : b) all.merge(replicate);
+    return all.mean();
+}
 
 Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, TechniqueDistribution& techniques,
                         const Mix& mix) {
@@ -105,7 +122,8 @@ Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, Tech
     for (const std::uint8_t f : finite) result.non_finite += !f;
     for (const auto& worker : workers) result.rays += worker->chart.tracer().rays();
 
-    result.groups = make_groups(weights, lengths, mix.lengths);
+    const std::size_t replicates = replicate_count(mix);
+    result.groups = make_groups(weights, lengths, mix.lengths, replicates);
     const std::vector<std::size_t> counts = share_chains(result.groups, static_cast<std::size_t>(mix.chain_count));
     Rng rng(mix.seed, stream(StreamUse::resampling, 0));
     Worker& worker = *workers.local();
@@ -116,7 +134,8 @@ Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, Tech
             if (lengths[i] != group.length) own[i] = 0;
         for (const std::size_t i : resample(own, counts[g], rng.uniform())) {
             draw(worker, i);
-            group.seeds.push_back(worker.state);
+            const auto replicate = static_cast<std::uint32_t>(replicate_of(i, own.size(), replicates));
+            group.seeds.push_back({worker.state, replicate});
         }
     }
     return result;

@@ -3,7 +3,10 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
+
 #include "base/rng.h"
+#include "chain/largest.h"
 #include "chain/running_mean.h"
 #include "strategies/mix.h"
 
@@ -15,12 +18,31 @@ inline std::uint64_t stream(StreamUse use, std::uint64_t index) {
     return (static_cast<std::uint64_t>(use) << 60) | index;
 }
 
+// A run is split into independent replicates, whose disagreement shows its errors. Each has an equal share of the
+// bootstrap's samples, the chains that start from them, and what those find. So a replicate whose samples found more
+// light has more chains.
+inline constexpr std::size_t most_replicates = 16;
+inline std::size_t replicate_count(const Mix& mix) {
+    return std::min(most_replicates, static_cast<std::size_t>(mix.chain_count));
+}
+
+// How many of the largest estimates of b are kept, to see whether it rests on them.
+inline constexpr std::size_t heaviest = 5;
+
+struct ChainSeed {
+    PssState state;
+    std::uint32_t replicate = 0;
+};
+
 // Chains that share a target and its normalisation: all chains where lengths are free, those of one length where each
 // chain keeps its own. The image is the sum over groups of b / (mutations of the group) times the group's film.
 struct ChainGroup {
-    int length = 0;               // of its paths; 0: any
-    RunningMean b;                // integral of f* over raster area, of these paths
-    std::vector<PssState> seeds;  // one per chain, in proportion to the target
+    int length = 0;                // of its paths; 0: any
+    std::vector<RunningMean> b;    // by replicate: integral of f* over raster area, of these paths
+    Largest<heaviest> largest;     // of the samples that b is the mean of
+    std::vector<ChainSeed> seeds;  // one per chain, in proportion to the target
+
+    double mean_b() const;  // of all replicates
 };
 
 struct Bootstrap {

@@ -3,20 +3,39 @@
 namespace keyhole {
 namespace {
 
+constexpr std::uint64_t observed_every = 8;  // steps
+
 Mixture<PssState, Rng> make_mixture(const std::vector<const MixStrategy*>& strategies, const StrategyContext& context) {
     std::vector<Mixture<PssState, Rng>::Component> components;
     for (const MixStrategy* s : strategies) components.push_back({s->info->make(context, s->parameters), s->weight});
     return Mixture<PssState, Rng>(std::move(components));
 }
 
+// Both get every splat.
+template <class Film>
+struct PairSink {
+    FilmSink<Film> film;
+    BlockSink blocks;
+    void splat(const PssState& state, double weight) {
+        film.splat(state, weight);
+        blocks.splat(state, weight);
+    }
+};
+
 }  // namespace
 
 std::vector<RunningChain> start_chains(std::vector<ChainGroup>& groups, std::uint64_t seed) {
     std::vector<RunningChain> chains;
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        for (PssState& state : groups[g].seeds) {
+        for (ChainSeed& start : groups[g].seeds) {
             const Rng rng(seed, stream(StreamUse::chain, chains.size()));
-            chains.push_back({Chain<PssState>(std::move(state)), rng, {}, g});
+            chains.push_back({Chain<PssState>(std::move(start.state)),
+                              rng,
+                              {},
+                              {},
+                              0,
+                              static_cast<std::uint32_t>(g),
+                              start.replicate});
         }
         groups[g].seeds.clear();
     }
@@ -31,24 +50,56 @@ std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scen
 }
 
 ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                         const Mix& mix, std::size_t groups)
+                         const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films)
     : chart(scene, layout, mix.target),
       mixture(make_mixture(applicable_strategies(mix, scene), {chart, techniques, mix.lengths})),
-      films(groups, MetropolisFilm(scene.film())),
+      films(replicate_films ? 0 : groups, MetropolisFilm(scene.film())),
+      blocks(groups, std::vector<BlockSums>(replicate_count(mix))),
+      largest(groups),
       diagnostics(mixture.size()),
+      jumps(mixture.size()),
+      grid_(chart.window()),
+      replicate_films_(replicate_films),
       estimator_(chart, techniques, mix.lengths.fixed) {
     for (const MixStrategy* s : applicable_strategies(mix, scene)) independent_.push_back(s->info->independent);
 }
 
 void ChainWorker::advance(RunningChain& running, std::uint64_t mutations) {
     const WorkScope work(Phase::other);
-    FilmSink sink{films[running.group]};
+    if (replicate_films_)
+        advance(running, mutations, (*replicate_films_)[running.group][running.replicate]);
+    else
+        advance(running, mutations, films[running.group]);
+}
+
+template <class Film>
+void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Film& film) {
+    PairSink<Film> sink{{film}, {grid_, blocks[running.group][running.replicate]}};
     for (std::uint64_t i = 0; i < mutations; ++i) {
         const StepOutcome outcome = running.chain.step(mixture, running.rng, sink, diagnostics);
+        if (++running.steps % observed_every == 0) observe(running, outcome);
         if (outcome.idle || !independent_[outcome.strategy]) continue;
-        const PssState& y = running.chain.proposed(outcome);
-        running.b.add(outcome.failure == Failure::none ? estimator_.estimate(y) : 0);
+        const double b = outcome.failure == Failure::none ? estimator_.estimate(running.chain.proposed(outcome)) : 0;
+        running.b.add(b);
+        largest[running.group].add(b);
     }
+}
+
+Observables ChainWorker::observables(const PssState& state) const {
+    const RasterWindow& window = chart.window();
+    return {std::log(state.target), (state.raster.x() - window.origin.x()) / window.size.x(),
+            (state.raster.y() - window.origin.y()) / window.size.y()};
+}
+
+void ChainWorker::observe(RunningChain& running, const StepOutcome& outcome) {
+    const Observables now = observables(running.chain.current());
+    running.states.add(now);
+    if (outcome.idle) return;
+    // The other end of the jump. A proposal of probability zero may have no luminance, and does not count.
+    const Observables other = outcome.accepted         ? observables(running.chain.previous(outcome))
+                              : outcome.acceptance > 0 ? observables(running.chain.proposed(outcome))
+                                                       : now;
+    jumps[outcome.strategy].add(now, other, outcome.acceptance, jump_units);
 }
 
 }  // namespace keyhole

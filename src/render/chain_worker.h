@@ -3,19 +3,33 @@
 
 #include "base/phase.h"
 #include "chain/metropolis.h"
+#include "chain/mixing.h"
 #include "chain/running_mean.h"
+#include "render/block_sums.h"
 #include "render/bootstrap.h"
 #include "render/film.h"
 #include "strategies/mix.h"
 
 namespace keyhole {
 
+// What is followed of a state in order to know how fast chains mix: the logarithm of its target C, and its position in
+// the image in shares of the window.
+enum Observable { log_luminance, image_x, image_y, observable_count };
+using Observables = std::array<double, observable_count>;
+using ObservableMoments = StateMoments<observable_count>;
+using ObservableJumps = JumpSums<observable_count>;
+// Of squared jumps: finer than Kelemen's smallest steps, and enough for 10^11 proposals.
+inline constexpr Observables jump_units = {0x1p-20, 0x1p-28, 0x1p-28};
+
 // One chain and its random numbers: all there is to save of it.
 struct RunningChain {
     Chain<PssState> chain;
     Rng rng;
-    RunningMean b;          // of its group, estimated by its independent proposals
-    std::size_t group = 0;  // see ChainGroup
+    RunningMean b;             // of its group, estimated by its independent proposals
+    ObservableMoments states;  // of every eighth state
+    std::uint64_t steps = 0;
+    std::uint32_t group = 0;      // see ChainGroup
+    std::uint32_t replicate = 0;  // see ChainSeed
 };
 
 // The chains of a bootstrap's groups, one after the other. Takes the seeds out of the groups.
@@ -24,28 +38,52 @@ std::vector<RunningChain> start_chains(std::vector<ChainGroup>& groups, std::uin
 // The strategies of a mix that are used (weight above zero) and apply to the scene, in the mix's order.
 std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scene& scene);
 
+template <class Film>
 struct FilmSink {
-    MetropolisFilm& film;
+    Film& film;
     void splat(const PssState& state, double weight) {
         const PhaseScope phase(Phase::film);
         film.splat(state.raster, state.splat * weight);
     }
 };
+template <class Film>
+FilmSink(Film&) -> FilmSink<Film>;
+
+struct BlockSink {
+    const BlockGrid& grid;
+    BlockSums& sums;
+    void splat(const PssState& state, double weight) {
+        sums.add(grid.index(state.raster), luminance(state.splat) * weight);
+    }
+};
+
+// Films that all workers add to, by group and replicate; empty where no errors of pixels are asked for.
+using ReplicateFilms = std::vector<std::vector<SharedMetropolisFilm>>;
 
 class ChainWorker {
   public:
-    // `mix` is resolved. One film for each of the groups.
+    // `mix` is resolved. One film for each of the groups, unless there are films of replicates to add to.
     ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                const Mix& mix, std::size_t groups);
+                const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films = nullptr);
 
     void advance(RunningChain& running, std::uint64_t mutations);
 
     Chart chart;
     Mixture<PssState, Rng> mixture;
-    std::vector<MetropolisFilm> films;  // by group
+    std::vector<MetropolisFilm> films;           // by group
+    std::vector<std::vector<BlockSums>> blocks;  // by group and replicate
+    std::vector<Largest<heaviest>> largest;      // by group: estimates of b by independent proposals
     Diagnostics diagnostics;
+    std::vector<ObservableJumps> jumps;  // by strategy, of every eighth proposal
 
   private:
+    template <class Film>
+    void advance(RunningChain& running, std::uint64_t mutations, Film& film);
+    void observe(RunningChain& running, const StepOutcome& outcome);
+    Observables observables(const PssState& state) const;
+
+    BlockGrid grid_;
+    ReplicateFilms* replicate_films_;
     std::vector<char> independent_;  // of each strategy: whether its proposals estimate b
     LargeStep estimator_;
 };

@@ -1,6 +1,7 @@
 // Films that give the same bits whatever the order of their splats: sums of fixed-point integers.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -16,8 +17,8 @@ __extension__ using Int128 = __int128;
 
 // Word and FractionBits set range and resolution. A Metropolis splat is f / f* (luminance one) times a probability:
 // 64 bits with 2^-24 hold 5e11 of them in one pixel, and each is rounded to 6e-8. Radiance has no bound: 128 bits with
-// 2^-64 hold 9e18.
-template <class Word, int FractionBits>
+// 2^-64 hold 9e18. Several threads may splat into one film at a time if it is `Shared`.
+template <class Word, int FractionBits, bool Shared = false>
 class FixedPointFilm {
   public:
     static constexpr std::size_t bytes_per_pixel = 3 * sizeof(Word);
@@ -44,7 +45,8 @@ class FixedPointFilm {
         }
     }
 
-    void merge(const FixedPointFilm& other) {
+    template <bool OtherShared>
+    void merge(const FixedPointFilm<Word, FractionBits, OtherShared>& other) {
         for (std::size_t i = 0; i < pixels_.size(); ++i)
             for (int c = 0; c < 3; ++c) pixels_[i].rgb[c] += other.pixels_[i].rgb[c];
     }
@@ -65,6 +67,9 @@ class FixedPointFilm {
     bool operator==(const FixedPointFilm& other) const { return pixels_ == other.pixels_; }
 
   private:
+    template <class, int, bool>
+    friend class FixedPointFilm;
+
     struct Pixel {
         Word rgb[3] = {0, 0, 0};
         bool operator==(const Pixel&) const = default;
@@ -72,7 +77,12 @@ class FixedPointFilm {
 
     void add(int px, int py, const Spectrum& value) {
         Pixel& pixel = pixels_[static_cast<std::size_t>(py) * width() + px];
-        for (int c = 0; c < 3; ++c) pixel.rgb[c] += to_fixed(value[c]);
+        for (int c = 0; c < 3; ++c) {
+            if constexpr (Shared)
+                std::atomic_ref(pixel.rgb[c]).fetch_add(to_fixed(value[c]), std::memory_order_relaxed);
+            else
+                pixel.rgb[c] += to_fixed(value[c]);
+        }
     }
     static Word to_fixed(double v) {
         if constexpr (sizeof(Word) == 8)
@@ -86,6 +96,7 @@ class FixedPointFilm {
 };
 
 using MetropolisFilm = FixedPointFilm<std::int64_t, 24>;
+using SharedMetropolisFilm = FixedPointFilm<std::int64_t, 24, true>;
 using RadianceFilm = FixedPointFilm<Int128, 64>;
 
 }  // namespace keyhole

@@ -4,15 +4,18 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cmath>
+#include <memory>
+#include <numeric>
 
 #include "base/parallel.h"
-#include "render/chain_worker.h"
+#include "render/error_statistics.h"
 #include "render/run_control.h"
 
 namespace keyhole {
 namespace {
 
-void report(const Diagnostics& total, const std::vector<const MixStrategy*>& strategies, RenderStatistics& statistics) {
+void report_strategies(const Diagnostics& total, const std::vector<const MixStrategy*>& strategies,
+                       RenderStatistics& statistics) {
     for (std::size_t i = 0; i < strategies.size(); ++i) {
         const StrategyCounts& counts = total.strategies[i];
         StrategyStatistics s;
@@ -37,33 +40,168 @@ void warn_of_hindrances(const Mix& mix, const Scene& scene, RenderStatistics& st
             statistics.warnings.push_back(fmt::format("strategy '{}' never applies here: {}", s.label, why));
 }
 
-// What is known of b by group: the bootstrap's samples, and the independent proposals of the chains.
-std::vector<RunningMean> estimate_b(const std::vector<ChainGroup>& groups, const std::vector<RunningChain>& chains) {
-    std::vector<RunningMean> b;
-    for (const ChainGroup& group : groups) b.push_back(group.b);
-    for (const RunningChain& c : chains) b[c.group].merge(c.b);
-    return b;
+// By group and replicate.
+template <class T>
+using Cells = std::vector<std::vector<T>>;
+
+RunningMean merged(const std::vector<RunningMean>& replicates) {
+    RunningMean all;
+    for (const RunningMean& mean : replicates) all.merge(mean);
+    return all;
 }
 
-std::vector<std::uint64_t> count_chains(const std::vector<RunningChain>& chains, std::size_t groups) {
-    std::vector<std::uint64_t> counts(groups, 0);
-    for (const RunningChain& c : chains) ++counts[c.group];
-    return counts;
-}
-
-void report_b(const std::vector<ChainGroup>& groups, const std::vector<RunningChain>& chains, double area,
-              RenderStatistics& statistics) {
-    const std::vector<RunningMean> b = estimate_b(groups, chains);
-    const std::vector<std::uint64_t> counts = count_chains(chains, groups.size());
-    double variance = 0;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        const LengthStatistics s{groups[g].length, counts[g], b[g].mean() / area, b[g].standard_error() / area};
-        statistics.b += s.b;
-        variance += s.b_standard_error * s.b_standard_error;
-        if (s.length > 0) statistics.lengths.push_back(s);
+// The chains of a run and all that they leave behind.
+class ChainRun {
+  public:
+    ChainRun(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
+             const TechniqueDistribution& techniques, Bootstrap bootstrap)
+        : scene_(scene),
+          groups_(std::move(bootstrap.groups)),
+          chains_(start_chains(groups_, settings.mix.seed)),
+          chain_counts_(cells<double>()),
+          blocks_(groups_.size(), replicates()),
+          workers_([&, this] {
+              return std::make_unique<ChainWorker>(scene, layout, techniques, settings.mix, groups_.size(),
+                                                   settings.error_image ? &replicate_films_ : nullptr);
+          }) {
+        for (const RunningChain& c : chains_) ++chain_counts_[c.group][c.replicate];
+        if (settings.error_image) replicate_films_ = cells(SharedMetropolisFilm(scene.film()));
     }
-    statistics.b_standard_error = std::sqrt(variance);
-}
+
+    // Makes at most that many mutations of each chain, and returns how many.
+    std::uint64_t advance(std::uint64_t most) {
+        const std::uint64_t mutations = std::min(most, blocks_.left_of_batch());
+        parallel_for(chains_.size(), [&](std::uint64_t i) { workers_.local()->advance(chains_[i], mutations); });
+        for (const auto& worker : workers_) blocks_.take(worker->blocks);
+        blocks_.passed(mutations);
+        done_ += mutations;
+        return mutations;
+    }
+
+    Diagnostics diagnostics() const {
+        Diagnostics total((*workers_.begin())->mixture.size());
+        for (const auto& worker : workers_) total += worker->diagnostics;
+        return total;
+    }
+
+    Image develop() const {
+        const Cells<RunningMean> b = estimate_b();
+        Image image(scene_.film().crop_width, scene_.film().crop_height);
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            MetropolisFilm sum(scene_.film());
+            for (const auto& worker : workers_)
+                if (!worker->films.empty()) sum.merge(worker->films[g]);
+            if (!replicate_films_.empty())
+                for (const SharedMetropolisFilm& film : replicate_films_[g]) sum.merge(film);
+            FilmSink sink{sum};
+            splat_held(sink, g);
+            const Image part = sum.develop(merged(b[g]).mean() / mutations(g));
+            for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] += part.rgb[i];
+        }
+        return image;
+    }
+
+    // Standard errors of the values of develop(). Only where there are films of replicates.
+    Image develop_errors() const {
+        const ReplicateErrors errors(estimate_b(), mutations());
+        const auto part = [&](std::size_t g, std::size_t r) {
+            MetropolisFilm sum(scene_.film());
+            sum.merge(replicate_films_[g][r]);
+            FilmSink sink{sum};
+            splat_held(sink, g, r);
+            return sum.develop(errors.b(g) / errors.mutations(g)).rgb;
+        };
+        Image image(scene_.film().crop_width, scene_.film().crop_height);
+        const std::vector<double> values = errors.standard_errors(image.rgb.size(), part);
+        for (std::size_t i = 0; i < values.size(); ++i) image.rgb[i] = static_cast<float>(values[i]);
+        return image;
+    }
+
+    void report(const std::vector<const MixStrategy*>& strategies, RenderStatistics& statistics) const {
+        for (const auto& worker : workers_) statistics.rays += worker->chart.tracer().rays();
+        report_b(statistics);
+        report_strategies(diagnostics(), strategies, statistics);
+        report_errors(record(), blocks_, statistics);
+    }
+
+  private:
+    std::size_t replicates() const { return groups_[0].b.size(); }
+    template <class T>
+    Cells<T> cells(const T& value = T()) const {
+        return Cells<T>(groups_.size(), std::vector<T>(replicates(), value));
+    }
+    static constexpr std::size_t every = ~std::size_t{0};
+
+    template <class Sink>
+    void splat_held(Sink& sink, std::size_t group, std::size_t replicate = every) const {
+        for (const RunningChain& c : chains_)
+            if (c.group == group && (replicate == every || c.replicate == replicate)) c.chain.splat_held(sink);
+    }
+
+    // From the bootstrap's samples and the independent proposals of the chains.
+    Cells<RunningMean> estimate_b() const {
+        Cells<RunningMean> b;
+        for (const ChainGroup& group : groups_) b.push_back(group.b);
+        for (const RunningChain& c : chains_) b[c.group][c.replicate].merge(c.b);
+        return b;
+    }
+
+    Cells<double> mutations() const {
+        Cells<double> result = chain_counts_;
+        for (std::vector<double>& group : result)
+            for (double& count : group) count *= static_cast<double>(done_);
+        return result;
+    }
+    double chains_of(std::size_t group) const {
+        return std::accumulate(chain_counts_[group].begin(), chain_counts_[group].end(), 0.0);
+    }
+    double mutations(std::size_t group) const { return chains_of(group) * static_cast<double>(done_); }
+
+    void report_b(RenderStatistics& statistics) const {
+        const double area = RasterWindow(scene_.film()).area();
+        const Cells<RunningMean> b = estimate_b();
+        double variance = 0;
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            const RunningMean all = merged(b[g]);
+            const auto chains = static_cast<std::uint64_t>(chains_of(g));
+            const LengthStatistics s{groups_[g].length, chains, all.mean() / area, all.standard_error() / area};
+            statistics.b += s.b;
+            variance += s.b_standard_error * s.b_standard_error;
+            if (s.length > 0) statistics.lengths.push_back(s);
+        }
+        statistics.b_standard_error = std::sqrt(variance);
+    }
+
+    RunRecord record() const {
+        RunRecord record(RasterWindow(scene_.film()));
+        record.b = estimate_b();
+        record.mutations = mutations();
+        record.blocks = blocks_.totals();
+        record.states = cells<ObservableMoments>();
+        const BlockGrid grid(record.window);
+        for (const RunningChain& c : chains_) {
+            BlockSink sink{grid, record.blocks[c.group][c.replicate]};
+            c.chain.splat_held(sink);
+            record.states[c.group][c.replicate] += c.states;
+        }
+        for (const ChainGroup& group : groups_) record.largest.push_back(group.largest);
+        record.jumps.resize((*workers_.begin())->jumps.size());
+        for (const auto& worker : workers_) {
+            for (std::size_t g = 0; g < groups_.size(); ++g) record.largest[g] += worker->largest[g];
+            for (std::size_t s = 0; s < record.jumps.size(); ++s) record.jumps[s] += worker->jumps[s];
+        }
+        return record;
+    }
+
+    const Scene& scene_;
+    std::vector<ChainGroup> groups_;
+    std::vector<RunningChain> chains_;
+    Cells<double> chain_counts_;
+    BlockRecord blocks_;
+    ReplicateFilms replicate_films_;
+    tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker>> workers_;
+    std::uint64_t done_ = 0;  // mutations of each chain
+};
 
 }  // namespace
 
@@ -80,52 +218,26 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
     const CoordinateLayout layout(scene, mix.lengths.max);
     TechniqueDistribution techniques(mix.lengths.min, mix.lengths.max);
     Bootstrap bootstrap = run_bootstrap(scene, layout, techniques, mix);
-    std::vector<ChainGroup>& groups = bootstrap.groups;
     statistics.seconds_bootstrap = control.elapsed();
     statistics.rays = bootstrap.rays;
     statistics.non_finite = bootstrap.non_finite;
-    if (groups.empty()) {
-        result.image = Image(film.crop_width, film.crop_height);
+    if (bootstrap.groups.empty()) {
+        result.image = result.error = Image(film.crop_width, film.crop_height);
         statistics.cpu_seconds = control.elapsed_cpu();
         statistics.warnings.push_back("no bootstrap path carries light: the image is black");
         return result;
     }
 
-    std::vector<RunningChain> chains = start_chains(groups, mix.seed);
-    const std::vector<std::uint64_t> chain_counts = count_chains(chains, groups.size());
-    tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker>> workers(
-        [&] { return std::make_unique<ChainWorker>(scene, layout, techniques, mix, groups.size()); });
-    auto count = [&] {
-        Diagnostics total((*workers.begin())->mixture.size());
-        for (const auto& worker : workers) total += worker->diagnostics;
-        return total;
-    };
-    auto develop = [&] {
-        const std::vector<RunningMean> b = estimate_b(groups, chains);
-        Image image(film.crop_width, film.crop_height);
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-            MetropolisFilm sum(film);
-            for (const auto& worker : workers) sum.merge(worker->films[g]);
-            FilmSink sink{sum};
-            for (const RunningChain& c : chains)
-                if (c.group == g) c.chain.splat_held(sink);
-            const double mutations = static_cast<double>(control.done()) * static_cast<double>(chain_counts[g]);
-            const Image part = sum.develop(b[g].mean() / mutations);
-            for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] += part.rgb[i];
-        }
-        return image;
-    };
-
-    while (const std::uint64_t mutations = control.next_pass()) {
-        parallel_for(chains.size(), [&](std::uint64_t i) { workers.local()->advance(chains[i], mutations); });
-        control.finished(mutations, count().total().mean_acceptance(), develop);
+    ChainRun run(scene, settings, layout, techniques, std::move(bootstrap));
+    while (const std::uint64_t pass = control.next_pass()) {
+        const std::uint64_t mutations = run.advance(pass);
+        control.finished(mutations, run.diagnostics().total().mean_acceptance(), [&] { return run.develop(); });
     }
 
-    result.image = develop();
-    report_b(groups, chains, RasterWindow(film).area(), statistics);
+    result.image = run.develop();
+    if (settings.error_image) result.error = run.develop_errors();
     control.report(statistics);
-    for (const auto& worker : workers) statistics.rays += worker->chart.tracer().rays();
-    report(count(), applicable_strategies(mix, scene), statistics);
+    run.report(applicable_strategies(mix, scene), statistics);
     return result;
 }
 

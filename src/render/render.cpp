@@ -66,6 +66,7 @@ RenderSettings resolve(const Scene& scene, RenderSettings s) {
     check(mix.lengths.max <= PathLengths::longest, "paths of more than 256 edges are not supported");
     check(mix.chain_count > 0, "the number of chains must be positive");
     check(mix.bootstrap_samples >= 4, "the bootstrap needs at least 4 samples");
+    check(chains || !s.error_image, "errors of pixels are estimated with chains only");
     if (!chains) return s;
     Mix applicable = mix;
     std::erase_if(applicable.strategies,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "chain/mixing.h"
 #include "render/image.h"
 #include "scene/scene.h"
 #include "strategies/mix_file.h"
@@ -31,6 +32,8 @@ struct RenderSettings {
     double preview_every = 0;
     // Fill in RenderStatistics::time_split, for less than 2% of the time.
     bool sample_time_split = false;
+    // Whether standard errors of pixels are estimated (mmlt only): one film for each replicate of the run.
+    bool error_image = false;
 };
 
 struct Progress {
@@ -65,6 +68,9 @@ struct StrategyStatistics {
     std::uint64_t proposals = 0, accepted = 0;
     double mean_acceptance = 0;
     std::map<std::string, std::uint64_t> failures;  // by kind
+    // What its proposals are worth by themselves, at most (see mixing_bound): of the luminance that a path carries (the
+    // logarithm of the target C), and of its position in the image.
+    Mixing luminance, position;
 };
 
 // Of chains that keep their length: all with the same one.
@@ -74,16 +80,34 @@ struct LengthStatistics {
     double b = 0, b_standard_error = 0;  // what paths of this length add to `b`
 };
 
+// How far to trust a run of chains, from the disagreement of independent replicates of it. What is not known (there was
+// one chain, or nothing to see) is infinite, or negative where it is said.
+struct ErrorStatistics {
+    int replicates = 0;
+    double image_mean = 0;  // standard error of the image's mean luminance
+    // 16 x 16 equal blocks of the image, row by row from the top: mean luminance, and its standard error.
+    std::vector<double> block_means, block_errors;
+    double blocks_relative = 0;  // mean of block_errors over the image's mean
+    // Of all chains together: of the luminance that a path carries and of its position in the image.
+    Mixing luminance, position;
+    // Share of the light in blocks where replicates disagree more than their own noise explains; negative: the run was
+    // too short to know.
+    double disagreeing_light = -1;
+    // What b rests on: samples of equal weight that would know it as well, and the share of the five largest samples.
+    double effective_paths = 0, heaviest_share = 0;
+};
+
 struct RenderStatistics {
     std::uint64_t mutations = 0;  // or samples
     std::uint64_t rounds = 0;     // mutations of each chain, or samples of each pixel that the filter reaches
     std::uint64_t rays = 0;
     double seconds_bootstrap = 0, seconds_render = 0, cpu_seconds = 0;
-    // Integral of f* over the area of the crop window, and its error: the mean luminance of the image, where the mix
-    // does not say another target.
+    // Integral of f* over the area of the crop window: the mean luminance of the image, where the mix does not say
+    // another target. Its error is that of the independent samples it is the mean of.
     double b = 0, b_standard_error = 0;
     int chains = 0, threads = 0, max_length = 0;
     std::vector<StrategyStatistics> strategies;
+    ErrorStatistics errors;                 // of chains
     std::vector<LengthStatistics> lengths;  // of chains that keep theirs; in ascending order
     std::uint64_t non_finite = 0;           // NaN or infinite contributions: rejected, counted, and warned about
     std::uint64_t peak_memory_bytes = 0;
@@ -95,6 +119,7 @@ struct RenderStatistics {
 
 struct RenderResult {
     Image image;  // of the crop window
+    Image error;  // standard errors of its values, where the settings ask for them; infinite where not known
     RenderStatistics statistics;
 };
 

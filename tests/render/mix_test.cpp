@@ -141,6 +141,7 @@ TEST(Mixes, ThatCannotMoveHereAreWarnedAbout) {
     RenderSettings settings = small_run();
     EXPECT_THAT(render(*scene, settings).statistics.warnings, testing::IsEmpty());
     settings.mix.lengths = {1, 1, false};
+    settings.mix.bootstrap_samples = 40000;  // few pixels see the lamp
     EXPECT_THAT(
         render(*scene, settings).statistics.warnings,
         testing::ElementsAre("strategy 'technique-change' never applies here: paths of one edge have one technique "

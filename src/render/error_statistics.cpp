@@ -1,0 +1,150 @@
+#include "render/error_statistics.h"
+
+#include <fmt/format.h>
+
+namespace keyhole {
+namespace {
+
+// Limits beyond which a run is warned about. Renders of the project's scenes that are not hard keep a distance of a
+// factor of three to the first two, and of 1.6 (short runs) to 3 to the last.
+constexpr double fewest_effective_paths = 100;  // b is known to 10%
+constexpr double most_of_heaviest = 0.2;        // of b, by the five largest samples
+constexpr double most_disagreeing = 0.2;        // of the light
+
+std::vector<float> block_means(const RunRecord& record, const ReplicateErrors& errors, std::size_t g, std::size_t r) {
+    const double scale = errors.b(g) / errors.mutations(g) * BlockGrid::count / record.window.area();
+    std::vector<float> means(BlockGrid::count + 1);
+    for (int j = 0; j < BlockGrid::count; ++j) {
+        means[j] = static_cast<float>(scale * record.blocks[g][r][j]);
+        means[BlockGrid::count] += means[j] / BlockGrid::count;  // the last is the whole image's
+    }
+    return means;
+}
+
+void report_blocks(const RunRecord& record, ErrorStatistics& result) {
+    const ReplicateErrors errors(record.b, record.mutations);
+    const auto part = [&](std::size_t g, std::size_t r) { return block_means(record, errors, g, r); };
+    result.block_errors = errors.standard_errors(BlockGrid::count + 1, part);
+    result.block_means.assign(BlockGrid::count + 1, 0.0);
+    for (std::size_t g = 0; g < record.blocks.size(); ++g)
+        for (std::size_t r = 0; r < record.blocks[g].size(); ++r) {
+            const std::vector<float> means = part(g, r);
+            for (std::size_t j = 0; j < means.size(); ++j) result.block_means[j] += means[j];
+        }
+    result.image_mean = result.block_errors.back();
+    const double mean = result.block_means.back();
+    result.block_means.pop_back();
+    result.block_errors.pop_back();
+    double sum = 0;
+    for (const double error : result.block_errors) sum += error / BlockGrid::count;
+    if (mean > 0) result.blocks_relative = sum / mean;
+}
+
+// Of a mean over the states of all chains.
+double squared_error_of_mean(const RunRecord& record, std::size_t observable) {
+    double all = 0;
+    for (const auto& group : record.states)
+        for (const ObservableMoments& m : group) all += static_cast<double>(m.count);
+    std::vector<double> moved(record.states[0].size(), 0.0);
+    for (const auto& group : record.states) {
+        std::vector<ReplicatePart> parts;
+        for (const ObservableMoments& m : group) parts.push_back({m.sums[observable], static_cast<double>(m.count)});
+        const double share = total(parts).count / all;
+        const std::vector<double> of_group = deviations(parts);
+        for (std::size_t r = 0; r < moved.size(); ++r) moved[r] += share > 0 ? share * of_group[r] : 0;
+    }
+    return sum_of_squares(moved);
+}
+
+// A value for each of the observables, put together as those of the luminance and of the position (in pixels).
+struct Followed {
+    double luminance, position;
+    Followed(const Observables& v, const RasterWindow& window)
+        : luminance(v[log_luminance]),
+          position(v[image_x] * window.size.x() * window.size.x() + v[image_y] * window.size.y() * window.size.y()) {}
+};
+
+Followed mean_square_jump(const ObservableJumps& jumps, const RasterWindow& window) {
+    Observables squares;
+    for (std::size_t i = 0; i < squares.size(); ++i) squares[i] = jumps.mean_square(i, jump_units);
+    return {squares, window};
+}
+
+// Returns a lower bound of the time in which the chains forget their position, from their jumps.
+double report_mixing(const RunRecord& record, RenderStatistics& statistics) {
+    ObservableMoments all;
+    for (const auto& group : record.states)
+        for (const ObservableMoments& m : group) all += m;
+    Observables variances, errors;
+    for (std::size_t i = 0; i < variances.size(); ++i) {
+        variances[i] = all.variance(i);
+        errors[i] = squared_error_of_mean(record, i);
+    }
+    const Followed variance(variances, record.window), error(errors, record.window);
+    const double steps = static_cast<double>(statistics.mutations);
+    statistics.errors.luminance = mixing_from_error(variance.luminance, error.luminance, steps);
+    statistics.errors.position = mixing_from_error(variance.position, error.position, steps);
+    ObservableJumps jumps;
+    for (std::size_t s = 0; s < record.jumps.size(); ++s) {
+        jumps += record.jumps[s];
+        const Followed jump = mean_square_jump(record.jumps[s], record.window);
+        const double proposals = static_cast<double>(statistics.strategies[s].proposals);
+        statistics.strategies[s].luminance = mixing_bound(variance.luminance, jump.luminance, proposals);
+        statistics.strategies[s].position = mixing_bound(variance.position, jump.position, proposals);
+    }
+    return mixing_bound(variance.position, mean_square_jump(jumps, record.window).position, steps).autocorrelation_time;
+}
+
+// How much of b its largest samples carry, and how many samples of equal size would make an estimate as rough.
+void report_heavy_paths(const RunRecord& record, ErrorStatistics& result) {
+    double sum = 0, squares = 0;
+    Largest<heaviest> largest;
+    for (std::size_t g = 0; g < record.b.size(); ++g) {
+        RunningMean b;
+        for (const RunningMean& replicate : record.b[g]) b.merge(replicate);
+        const double n = static_cast<double>(b.count());
+        sum += b.mean();
+        squares += (b.variance() * (n - 1) / n + b.mean() * b.mean()) / n;
+        for (const double w : record.largest[g].values()) largest.add(w / n);
+    }
+    result.effective_paths = sum * sum / squares;
+    for (const double w : largest.values()) result.heaviest_share += w / sum;
+}
+
+void warn_of_heavy_paths(RenderStatistics& statistics) {
+    const ErrorStatistics& e = statistics.errors;
+    if (e.effective_paths >= fewest_effective_paths && e.heaviest_share <= most_of_heaviest) return;
+    statistics.warnings.push_back(
+        fmt::format("the image's brightness rests on few paths: the {} of largest weight carry {:.0f}% of b, and b is "
+                    "as uncertain as "
+                    "with {:.0f} paths of equal weight; light may be missing or too bright. A longer bootstrap "
+                    "(--set bootstrap.samples=...), more large steps (--set large-step.weight=...) or another mix "
+                    "finds more of them",
+                    heaviest, 100 * e.heaviest_share, e.effective_paths));
+}
+
+void warn_of_disagreement(RenderStatistics& statistics) {
+    const ErrorStatistics& e = statistics.errors;
+    if (e.disagreeing_light <= most_disagreeing) return;
+    statistics.warnings.push_back(fmt::format(
+        "independent parts of the run disagree more than their noise explains, where {:.0f}% of the image's light is: "
+        "chains stay in parts of the image for most of the run, so it may look clean and be wrong. Render longer, with "
+        "more large steps (--set large-step.weight=...), a longer bootstrap (--set bootstrap.samples=...) or another "
+        "mix",
+        100 * e.disagreeing_light));
+}
+
+}  // namespace
+
+void report_errors(const RunRecord& record, const BlockRecord& over_time, RenderStatistics& statistics) {
+    ErrorStatistics& errors = statistics.errors;
+    errors.replicates = static_cast<int>(record.b[0].size());
+    report_blocks(record, errors);
+    const double memory = report_mixing(record, statistics);
+    report_heavy_paths(record, errors);
+    errors.disagreeing_light = over_time.disagreeing_light(memory);
+    warn_of_heavy_paths(statistics);
+    warn_of_disagreement(statistics);
+}
+
+}  // namespace keyhole
