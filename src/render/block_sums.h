@@ -20,7 +20,7 @@ class BlockGrid {
 
     // The block of a position in the window.
     int index(const Vec2& raster) const {
-        const auto cell = [](double x) { return std::clamp(static_cast<int>(x), 0, side - 1); };
+        const auto cell = [](double x) { return std::min(static_cast<int>(x), side - 1); };
         return cell((raster.y() - origin_.y()) * scale_.y()) * side + cell((raster.x() - origin_.x()) * scale_.x());
     }
 

@@ -3,7 +3,7 @@
 namespace keyhole {
 namespace {
 
-constexpr std::uint64_t observed_every = 8;  // steps
+constexpr std::uint64_t observed_every = 16;  // steps
 
 Mixture<PssState, Rng> make_mixture(const std::vector<const MixStrategy*>& strategies, const StrategyContext& context) {
     std::vector<Mixture<PssState, Rng>::Component> components;

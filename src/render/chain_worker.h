@@ -26,7 +26,7 @@ struct RunningChain {
     Chain<PssState> chain;
     Rng rng;
     RunningMean b;             // of its group, estimated by its independent proposals
-    ObservableMoments states;  // of every eighth state
+    ObservableMoments states;  // of every sixteenth state
     std::uint64_t steps = 0;
     std::uint32_t group = 0;      // see ChainGroup
     std::uint32_t replicate = 0;  // see ChainSeed
@@ -74,7 +74,7 @@ class ChainWorker {
     std::vector<std::vector<BlockSums>> blocks;  // by group and replicate
     std::vector<Largest<heaviest>> largest;      // by group: estimates of b by independent proposals
     Diagnostics diagnostics;
-    std::vector<ObservableJumps> jumps;  // by strategy, of every eighth proposal
+    std::vector<ObservableJumps> jumps;  // by strategy, of every sixteenth proposal
 
   private:
     template <class Film>

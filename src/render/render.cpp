@@ -12,6 +12,7 @@
 #include "base/process.h"
 #include "base/units.h"
 #include "pss/layout.h"
+#include "render/bootstrap.h"
 #include "render/film.h"
 #include "render/metropolis.h"
 #include "render/unbiased.h"
@@ -32,7 +33,9 @@ void check_memory(const Scene& scene, const RenderSettings& s, int threads) {
     const bool chains = s.integrator == Integrator::mmlt;
     const double pixels = static_cast<double>(scene.film().crop_width) * scene.film().crop_height;
     const std::size_t film = chains ? MetropolisFilm::bytes_per_pixel : RadianceFilm::bytes_per_pixel;
-    const double films = pixels * static_cast<double>(film) * threads;
+    const std::size_t groups = s.mix.lengths.fixed ? static_cast<std::size_t>(s.mix.lengths.max) : 1;
+    const double of_replicates = s.error_image ? static_cast<double>(groups * replicate_count(s.mix)) : 0;
+    const double films = pixels * static_cast<double>(film) * (threads + of_replicates);
     const CoordinateLayout layout(scene, s.mix.lengths.max);
     const auto coordinates = static_cast<std::size_t>(layout.eye_capacity() + layout.light_capacity());
     const double states = chains ? 2.0 * s.mix.chain_count * static_cast<double>(coordinates * sizeof(double)) : 0;

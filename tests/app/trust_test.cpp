@@ -94,7 +94,8 @@ TEST_F(Trust, HealthyRendersAreNotWarnedAbout) {
 }
 
 TEST_F(Trust, ErrorsAreInTheSummaryAndTheReport) {
-    const Finished done = run(quick_render("room.xml", {"-o", "a.exr", "-v"}));
+    const Finished done =
+        run({"render", "room.xml", "-o", "a.exr", "-n", "40", "--chains", "64", "--bootstrap", "4096", "-v"});
     EXPECT_THAT(done.out, HasSubstr("effective samples"));
     EXPECT_THAT(done.out, HasSubstr("effective paths"));
     const nlohmann::json statistics = json("a.json")["statistics"], errors = statistics["errors"];
