@@ -17,9 +17,10 @@ case ${1:-} in
     -*) ;;
     ?*) scene=$1 && shift ;;
 esac
+given=$scene
 [ -e "$scene" ] || scene=$root/scenes/${scene%.xml}.xml
 [ ! -d "$scene" ] || scene=$(realpath "$scene")/scene.xml
-[ -f "$scene" ] || fail "no scene '$scene': give a scene file or one of: $(cd "$root/scenes" && echo *.xml)"
+[ -f "$scene" ] || fail "no scene '$given': give a scene file or one of: $(cd "$root/scenes" && echo *.xml)"
 name=$(basename "$scene" .xml)
 case $name in scene | scene_*) name=$(basename "$(dirname "$(realpath "$scene")")") ;; esac
 
