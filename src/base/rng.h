@@ -38,15 +38,17 @@ class Rng {
 
     // `n` <= buffered words at once, valid until the next call: the rest of a buffer that holds fewer is left out.
     const std::uint32_t* bits(std::uint32_t n) {
-        if (state_.used + n > buffered) refill();
+        if (state_.used + n > buffered) [[unlikely]]
+            refill();
         state_.used += n;
         return &words_[state_.used - n];
     }
 
     // Uniform in [0, 1), 53 bits.
     double uniform() {
-        const std::uint64_t high = bits(), low = bits();
-        return static_cast<double>((high << 21) ^ (low >> 11)) * 0x1p-53;
+        const std::uint32_t* words = bits(2);
+        const std::uint64_t both = std::uint64_t{words[0]} << 32 | words[1];
+        return static_cast<double>(static_cast<std::int64_t>(both >> 11)) * 0x1p-53;
     }
 
     // Uniform integer in [0, n), n >= 1; the bias is below n / 2^53.

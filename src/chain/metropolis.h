@@ -78,12 +78,12 @@ class Chain {
         const double a = outcome.acceptance;
         outcome.accepted = a >= 1 || (a > 0 && random.uniform() < a);
         held_ += 1 - a;
+        // The state that is not kept has all the weight that it will ever get.
+        const double weight = outcome.accepted ? held_ : a;
+        if (weight > 0) film.splat(outcome.accepted ? x : y, weight);
         if (outcome.accepted) {
-            if (held_ > 0) film.splat(x, held_);
             current_ = 1 - current_;
             held_ = a;
-        } else if (a > 0) {
-            film.splat(y, a);
         }
         diagnostics.strategies[selection.index].add(outcome.failure, a, outcome.accepted);
         return outcome;

@@ -1,6 +1,7 @@
 // A mixture of strategies: chooses one for each step, and accounts for the choice in the acceptance ratio.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -39,15 +40,20 @@ class Mixture {
     explicit Mixture(std::vector<Component> components) : components_(std::move(components)) {
         if (components_.empty() || components_.size() > max_size)
             throw std::invalid_argument("a mixture has 1 to " + std::to_string(max_size) + " strategies");
-        for (const Component& c : components_) {
+        double total = 0;
+        for (std::size_t i = 0; i < components_.size(); ++i) {
+            const Component& c = components_[i];
             if (!(c.weight >= 0 && std::isfinite(c.weight)))
                 throw std::invalid_argument("the weight of a strategy must be finite and not negative");
-            total_weight_ += c.weight;
-            varying_.push_back(c.strategy->suitability_varies());
-            varies_ = varies_ || varying_.back();
+            total += c.weight;
+            if (c.weight > 0) (c.strategy->suitability_varies() ? varying_ : constant_).push_back({c.weight, i});
         }
-        if (!(total_weight_ > 0 && std::isfinite(total_weight_)))
+        if (!(total > 0 && std::isfinite(total)))
             throw std::invalid_argument("the weights of a mixture must have a positive, finite sum");
+        // The likely ones first: they are found first.
+        std::stable_sort(constant_.begin(), constant_.end(),
+                         [](const Entry& a, const Entry& b) { return a.weight > b.weight; });
+        for (const Entry& e : constant_) constant_weight_ += e.weight;
     }
 
     std::size_t size() const { return components_.size(); }
@@ -55,52 +61,62 @@ class Mixture {
     double weight(std::size_t i) const { return components_[i].weight; }
 
     Selection select(const State& x, Random& random) const {
-        std::array<double, max_size> weights;
-        const double total = varies_ ? suited_weights(x, weights) : total_weight_;
+        std::array<double, max_size> suited;
+        double total = constant_weight_;
+        for (std::size_t i = 0; i < varying_.size(); ++i) total += suited[i] = suited_weight(varying_[i], x);
         if (!(total > 0)) return {};
+        Selection last;  // rounding may leave `left` just above zero at the end
         double left = random.uniform() * total;
-        std::size_t chosen = 0;
-        double chosen_weight = 0;
-        for (std::size_t i = 0; i < components_.size(); ++i) {
-            const double w = varies_ ? weights[i] : components_[i].weight;
-            if (w > 0) chosen = i, chosen_weight = w;  // rounding may leave `left` just above zero at the end
-            left -= w;
-            if (left < 0) break;
+        for (const Entry& e : constant_) {
+            last = {e.index, e.weight / total};
+            if ((left -= e.weight) < 0) return last;
         }
-        return {chosen, chosen_weight / total};
+        for (std::size_t i = 0; i < varying_.size(); ++i) {
+            if (suited[i] > 0) last = {varying_[i].index, suited[i] / total};
+            if ((left -= suited[i]) < 0) break;
+        }
+        return last;
     }
 
     // P(i | x); zero if the strategy does not apply.
     double probability(std::size_t i, const State& x) const {
-        if (!varies_) return components_[i].weight / total_weight_;
-        std::array<double, max_size> weights;
-        const double total = suited_weights(x, weights);
-        return total > 0 ? weights[i] / total : 0;
+        const auto [weight, total] = weights(i, x);
+        return total > 0 ? weight / total : 0;
     }
 
     // The ratio of a move to y that `selection` proposed, completed with the probabilities of choosing the strategy.
     double completed_ratio(double ratio, const Selection& selection, const State& y) const {
-        if (!varies_) return ratio;
-        std::array<double, max_size> weights;
-        const double total = suited_weights(y, weights);
-        return ratio * (total > 0 ? weights[selection.index] / (total * selection.probability) : 0);
+        if (varying_.empty()) return ratio;
+        const auto [weight, total] = weights(selection.index, y);
+        return ratio * (total > 0 ? weight / (total * selection.probability) : 0);
     }
 
   private:
-    double suited_weights(const State& x, std::array<double, max_size>& weights) const {
-        double total = 0;
-        for (std::size_t i = 0; i < components_.size(); ++i) {
-            weights[i] = components_[i].weight;
-            if (varying_[i]) weights[i] *= components_[i].strategy->suitability(x);
-            total += weights[i];
+    struct Entry {
+        double weight;
+        std::size_t index;  // in components_
+    };
+    struct Weights {
+        double chosen, total;
+    };
+
+    double suited_weight(const Entry& e, const State& x) const {
+        return e.weight * components_[e.index].strategy->suitability(x);
+    }
+    // Strategy i's weight at x, and the sum of all.
+    Weights weights(std::size_t i, const State& x) const {
+        Weights w{components_[i].weight, constant_weight_};
+        for (const Entry& e : varying_) {
+            const double suited = suited_weight(e, x);
+            if (e.index == i) w.chosen = suited;
+            w.total += suited;
         }
-        return total;
+        return w;
     }
 
     std::vector<Component> components_;
-    std::vector<char> varying_;  // whether the suitability of each one varies
-    double total_weight_ = 0;
-    bool varies_ = false;
+    std::vector<Entry> constant_, varying_;  // those of positive weight, by whether their suitability varies
+    double constant_weight_ = 0;
 };
 
 }  // namespace keyhole

@@ -1,11 +1,14 @@
 // Films that give the same bits whatever the order of their splats: sums of fixed-point integers.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "base/lanes.h"
 #include "base/spectrum.h"
 #include "base/vec.h"
 #include "render/image.h"
@@ -21,28 +24,22 @@ __extension__ using Int128 = __int128;
 template <class Word, int FractionBits, bool Shared = false>
 class FixedPointFilm {
   public:
-    static constexpr std::size_t bytes_per_pixel = 3 * sizeof(Word);
+    static constexpr bool packed = sizeof(Word) == 8 && !Shared;  // pixels of four words, added to all at once
+    static constexpr std::size_t bytes_per_pixel = (packed ? 4 : 3) * sizeof(Word);
 
     explicit FixedPointFilm(const FilmSettings& settings)
-        : settings_(settings), pixels_(static_cast<std::size_t>(settings.crop_width) * settings.crop_height) {}
+        : settings_(settings),
+          packed_limit_(0x1p50 / one / std::max(1.0, sqr(settings.filter.scale))),
+          pixels_(static_cast<std::size_t>(settings.crop_width) * settings.crop_height) {}
 
-    // Adds `value` at a raster position, spread over the pixels by the reconstruction filter. `value` is finite.
+    // Adds `value` at a raster position, spread over the pixels by the reconstruction filter. `value` is finite and not
+    // negative.
     void splat(const Vec2& raster, const Spectrum& value) {
-        const double x = raster.x() - settings_.crop_x, y = raster.y() - settings_.crop_y;
-        const double radius = settings_.filter.radius;
-        if (radius <= 0.5) {  // the pixel under the position
-            const int px = static_cast<int>(std::floor(x)), py = static_cast<int>(std::floor(y));
-            if (px >= 0 && py >= 0 && px < width() && py < height()) add(px, py, value);
-            return;
+        if constexpr (packed) {
+            if (value.maxCoeff() < packed_limit_) [[likely]]
+                return spread(raster, Double4{value[0], value[1], value[2], 0} * one);
         }
-        const int x0 = std::max(0, static_cast<int>(std::ceil(x - 0.5 - radius)));
-        const int x1 = std::min(width() - 1, static_cast<int>(std::floor(x - 0.5 + radius)));
-        const int y0 = std::max(0, static_cast<int>(std::ceil(y - 0.5 - radius)));
-        const int y1 = std::min(height() - 1, static_cast<int>(std::floor(y - 0.5 + radius)));
-        for (int py = y0; py <= y1; ++py) {
-            const Spectrum row = value * settings_.filter(py + 0.5 - y);
-            for (int px = x0; px <= x1; ++px) add(px, py, row * settings_.filter(px + 0.5 - x));
-        }
+        spread(raster, value);
     }
 
     template <bool OtherShared>
@@ -70,28 +67,71 @@ class FixedPointFilm {
     template <class, int, bool>
     friend class FixedPointFilm;
 
+    static constexpr double one = static_cast<double>(Int128{1} << FractionBits);
+
     struct Pixel {
-        Word rgb[3] = {0, 0, 0};
+        Word rgb[bytes_per_pixel / sizeof(Word)] = {};
         bool operator==(const Pixel&) const = default;
+
+        void add(const Spectrum& value) {
+            for (int c = 0; c < 3; ++c) {
+                if constexpr (Shared)
+                    std::atomic_ref(rgb[c]).fetch_add(to_fixed(value[c]), std::memory_order_relaxed);
+                else
+                    rgb[c] += to_fixed(value[c]);
+            }
+        }
+        static Word to_fixed(double v) {
+            if constexpr (sizeof(Word) == 8)
+                return std::llrint(v * one);
+            else
+                return static_cast<Word>(v * one);
+        }
+        // In units of the last bit, below 2^51: added to `shift` they are rounded to integers, which are then the low
+        // bits of its mantissa.
+        void add(Double4 value) {
+            constexpr double shift = 0x1.8p52;
+            const auto bits = std::bit_cast<Int64x4>(value + shift) - std::bit_cast<std::int64_t>(shift);
+            store_lanes(load_lanes<Int64x4>(rgb) + bits, rgb);
+        }
     };
 
-    void add(int px, int py, const Spectrum& value) {
-        Pixel& pixel = pixels_[static_cast<std::size_t>(py) * width() + px];
-        for (int c = 0; c < 3; ++c) {
-            if constexpr (Shared)
-                std::atomic_ref(pixel.rgb[c]).fetch_add(to_fixed(value[c]), std::memory_order_relaxed);
-            else
-                pixel.rgb[c] += to_fixed(value[c]);
+    // Pixels first to last of a row or column that the filter reaches from a position.
+    struct Reach {
+        int first, last;
+
+        Reach(double position, double radius, int size)
+            : first(std::max(0, static_cast<int>(std::ceil(position - 0.5 - radius)))),
+              last(std::min(size - 1, static_cast<int>(std::floor(position - 0.5 + radius)))) {}
+    };
+
+    template <class Value>
+    void spread(const Vec2& raster, const Value& value) {
+        const double x = raster.x() - settings_.crop_x, y = raster.y() - settings_.crop_y;
+        const ReconstructionFilter& filter = settings_.filter;
+        if (filter.radius <= 0.5) {  // the pixel under the position
+            const int px = static_cast<int>(std::floor(x)), py = static_cast<int>(std::floor(y));
+            if (px >= 0 && py >= 0 && px < width() && py < height()) pixel(px, py)->add(value);
+            return;
+        }
+        constexpr int most = 8;  // columns at a time
+        const Reach columns(x, filter.radius, width()), rows(y, filter.radius, height());
+        for (int first = columns.first; first <= columns.last; first += most) {
+            const int count = std::min(most, columns.last - first + 1);
+            double weights[most];
+            for (int i = 0; i < count; ++i) weights[i] = filter(first + i + 0.5 - x);
+            for (int py = rows.first; py <= rows.last; ++py) {
+                const Value row = value * filter(py + 0.5 - y);
+                Pixel* p = pixel(first, py);
+                for (int i = 0; i < count; ++i) p[i].add(Value(row * weights[i]));
+            }
         }
     }
-    static Word to_fixed(double v) {
-        if constexpr (sizeof(Word) == 8)
-            return std::llrint(v * std::ldexp(1.0, FractionBits));
-        else
-            return static_cast<Word>(v * std::ldexp(1.0, FractionBits));
-    }
+
+    Pixel* pixel(int px, int py) { return &pixels_[static_cast<std::size_t>(py) * width() + px]; }
 
     FilmSettings settings_;
+    double packed_limit_;  // whatever is below stays below 2^50 units under the filter's peak
     std::vector<Pixel> pixels_;
 };
 

@@ -1,6 +1,7 @@
 // Reconstruction filters: separable, even, unit integral over the plane in units of pixels.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -16,16 +17,9 @@ struct ReconstructionFilter {
     // Value in one dimension; normalised over its support.
     double operator()(double x) const {
         const double distance = std::abs(x);
+        if (type == Type::tent) return std::max(0.0, scale * (1 - scale * distance));  // scale is 1 / radius
         if (distance > radius) return 0;
-        switch (type) {
-            case Type::box:
-                return scale;
-            case Type::tent:
-                return scale * (1 - distance / radius);
-            case Type::gaussian:
-                return scale * (bell(distance, stddev) - shift);
-        }
-        return 0;
+        return type == Type::box ? scale : scale * (bell(distance, stddev) - shift);
     }
     // The gaussian before it is shifted and normalised.
     static double bell(double x, double stddev) { return std::exp(-0.5 * (x / stddev) * (x / stddev)); }

@@ -70,6 +70,18 @@ TYPED_TEST(Films, ASplatIsSpreadByTheFilterAndLosesNothingInside) {
     EXPECT_NEAR(image.pixel(3, 3)[0], 0.5, 1e-6);
 }
 
+TYPED_TEST(Films, SplatsOfAnySizeAreRoundedToTheLastBit) {
+    for (double value = 1e-3; value < 1e11; value *= 10) {
+        TypeParam film(settings(8, 8, make_tent_filter()));
+        film.splat({4.25, 3.5}, Spectrum(value, 0, value / 3));
+        const Image image = film.develop(1);
+        const double rounding = 0x1p-25;
+        EXPECT_NEAR(image.pixel(4, 3)[0], 0.75 * value, rounding + 1e-7 * value);
+        EXPECT_EQ(image.pixel(4, 3)[1], 0);
+        EXPECT_NEAR(image.pixel(3, 3)[2], 0.25 * value / 3, rounding + 1e-7 * value);
+    }
+}
+
 TYPED_TEST(Films, SplatsOutsideTheCropWindowAreDropped) {
     FilmSettings s = settings(8, 8, make_box_filter());
     s.crop_x = 2;
