@@ -1,6 +1,7 @@
 #include "pathspace/connect.h"
 
 #include <cmath>
+#include <limits>
 
 namespace keyhole {
 namespace {
@@ -34,140 +35,114 @@ bool evaluate_end(const Vertex& v, Mode mode, const Vec3& d, End& end) {
     return !is_black(end.f);
 }
 
+// The edge that closes a path, from one of its ends. The other may lie at infinity, in the unit direction p.
+struct Edge {
+    Vec3 d;  // unit direction
+    double length = std::numeric_limits<double>::infinity(), inverse_length = 1, inv_r2 = 1;
+
+    Edge(const Vec3& from, const Vec3& p, bool infinite) : d(p) {
+        if (infinite) return;
+        d -= from;
+        length = d.norm();
+        inverse_length = 1 / length;
+        inv_r2 = sqr(inverse_length);
+        d *= inverse_length;
+    }
+};
+
 // s = 0: x_k lies on an emitter.
-Connection hit_emitter(const Scene& scene, std::span<const Vertex> eye) {
-    Connection c;
+PathFailure hit_emitter(const Scene& scene, std::span<const Vertex> eye, Connection& c) {
     const Vertex& x = eye.back();
     const Emitter* emitter = x.x.emitter;
-    if (!emitter) {
-        c.failure = PathFailure::zero_bsdf;
-        return c;
-    }
+    if (!emitter) return PathFailure::zero_bsdf;
     const EmitterPoint e = emitter_point(x);
     const Vec3 w = x.infinite ? Vec3(-x.x.p) : x.x.frame.to_world(x.w_prev);
     c.throughput = x.throughput * emitter->radiance(e, w);
-    if (is_black(c.throughput)) {
-        c.failure = PathFailure::zero_bsdf;
-        return c;
-    }
+    if (is_black(c.throughput)) return PathFailure::zero_bsdf;
     c.junction.light_t1 = scene.emitter_probability(emitter) * emitter->pdf_point(e);
     // From the emitter to x_{k-1}: solid angle to area, or per perpendicular area times the cosine there.
     const Vertex& previous = eye[eye.size() - 2];
     double to_previous = x.to_prev;
     if (x.infinite) to_previous = eye.size() > 2 ? std::abs(previous.x.ng.dot(x.x.p)) : 0;
     c.junction.light_t2 = emitter->pdf_ray(e, w) * to_previous;
-    return c;
+    return PathFailure::none;
 }
 
 // t = 1: y_{s-1} is seen by the sensor.
-Connection see_from_sensor(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vertex& x0,
-                           std::span<const Vertex> light) {
-    Connection c;
+PathFailure see_from_sensor(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vertex& x0,
+                            std::span<const Vertex> light, Connection& c) {
     const Vertex& y = light.back();
     const auto view = tracer.scene().sensor().view(sensor, y.x.p);
-    if (!view || !window.contains(view->raster)) {
-        c.failure = PathFailure::outside_film;
-        return c;
-    }
+    if (!view || !window.contains(view->raster)) return PathFailure::outside_film;
     c.raster = view->raster;
-    Vec3 d = x0.infinite ? x0.x.p : Vec3(x0.x.p - y.x.p);
-    double inv_r2 = 1;
-    if (!x0.infinite) {
-        inv_r2 = 1 / d.squaredNorm();
-        d *= std::sqrt(inv_r2);
-    }
+    const Edge edge(y.x.p, x0.x.p, x0.infinite);
     End end;
-    if (!evaluate_end(y, Mode::light, d, end)) {
-        c.failure = PathFailure::zero_bsdf;
-        return c;
-    }
+    if (!evaluate_end(y, Mode::light, edge.d, end)) return PathFailure::zero_bsdf;
     // From the surface: the other end is on none, so that no error there counts.
-    if (!tracer.visible(Scene::offset_origin(y.x, d), view->o)) {
-        c.failure = PathFailure::occluded;
-        return c;
-    }
-    c.throughput = y.throughput * end.f * (view->importance * inv_r2 / x0.pdf_fwd);
-    c.junction.eye_t = view->raster_per_measure / window.area() * end.cos_geometric * inv_r2;
+    const double inverse_length = x0.infinite ? 1 / (view->o - y.x.p).norm() : edge.inverse_length;
+    if (!tracer.visible(Scene::offset_origin(y.x, edge.d), view->o, inverse_length)) return PathFailure::occluded;
+    c.throughput = y.throughput * end.f * (view->importance * edge.inv_r2 / x0.pdf_fwd);
+    c.junction.eye_t = view->raster_per_measure / window.area() * end.cos_geometric * edge.inv_r2;
     c.junction.eye_t1 = end.pdf_prev * y.to_prev;
-    return c;
+    return PathFailure::none;
 }
 
 // s = 1: next-event estimation.
-Connection connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const Vertex& y) {
-    Connection c;
+PathFailure connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const Vertex& y, Connection& c) {
     const Vertex& x = eye.back();
     const Emitter& emitter = *y.x.emitter;
     const EmitterPoint e = emitter_point(y);
-    Vec3 d = y.infinite ? y.x.p : Vec3(y.x.p - x.x.p);
-    double inv_r2 = 1;
-    if (!y.infinite) {
-        inv_r2 = 1 / d.squaredNorm();
-        d *= std::sqrt(inv_r2);
-    }
+    const Edge edge(x.x.p, y.x.p, y.infinite);
+    const Vec3& d = edge.d;
+    const double inv_r2 = edge.inv_r2;
     const Spectrum emitted = emitter.emitted(e, -d);
     End end;
-    if (is_black(emitted) || !evaluate_end(x, Mode::eye, d, end)) {
-        c.failure = PathFailure::zero_bsdf;
-        return c;
-    }
+    if (is_black(emitted) || !evaluate_end(x, Mode::eye, d, end)) return PathFailure::zero_bsdf;
     const Vec3 o = Scene::offset_origin(x.x, d);
     const bool surface = emitter.traits().surface;
-    const bool seen = y.infinite
-                          ? tracer.unoccluded({o, d})
-                          : tracer.visible(o, surface ? Scene::offset_target(y.x, -d, 1 / std::sqrt(inv_r2)) : y.x.p);
-    if (!seen) {
-        c.failure = PathFailure::occluded;
-        return c;
-    }
+    const bool seen = y.infinite ? tracer.unoccluded({o, d})
+                                 : tracer.visible(o, surface ? Scene::offset_target(y.x, -d, edge.length) : y.x.p,
+                                                  edge.inverse_length);
+    if (!seen) return PathFailure::occluded;
     c.throughput = x.throughput * end.f * y.throughput * emitted * inv_r2;
     c.junction.light_t1 = emitter.pdf_ray(e, -d) * end.cos_geometric * inv_r2;
     c.junction.light_t2 = end.pdf_prev * x.to_prev;
     c.junction.eye_t = end.pdf_next * (surface ? std::abs(y.x.ng.dot(d)) * inv_r2 : 1);
-    return c;
+    return PathFailure::none;
 }
 
-Connection connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::span<const Vertex> light) {
-    Connection c;
+PathFailure connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::span<const Vertex> light,
+                             Connection& c) {
     const Vertex &x = eye.back(), &y = light.back();
-    Vec3 d = y.x.p - x.x.p;
-    const double inv_r2 = 1 / d.squaredNorm();
-    if (!std::isfinite(inv_r2)) {
-        c.failure = PathFailure::occluded;
-        return c;
-    }
-    d *= std::sqrt(inv_r2);
+    const Edge edge(x.x.p, y.x.p, false);
+    const Vec3& d = edge.d;
+    const double inv_r2 = edge.inv_r2;
+    if (!std::isfinite(inv_r2)) return PathFailure::occluded;
     End at_x, at_y;
-    if (!evaluate_end(x, Mode::eye, d, at_x) || !evaluate_end(y, Mode::light, -d, at_y)) {
-        c.failure = PathFailure::zero_bsdf;
-        return c;
-    }
-    if (!tracer.visible(Scene::offset_origin(x.x, d), Scene::offset_target(y.x, -d, 1 / std::sqrt(inv_r2)))) {
-        c.failure = PathFailure::occluded;
-        return c;
-    }
+    if (!evaluate_end(x, Mode::eye, d, at_x) || !evaluate_end(y, Mode::light, -d, at_y)) return PathFailure::zero_bsdf;
+    if (!tracer.visible(Scene::offset_origin(x.x, d), Scene::offset_target(y.x, -d, edge.length), edge.inverse_length))
+        return PathFailure::occluded;
     c.throughput = x.throughput * at_x.f * at_y.f * y.throughput * inv_r2;
     c.junction.light_t1 = at_y.pdf_next * at_x.cos_geometric * inv_r2;
     c.junction.light_t2 = at_x.pdf_prev * x.to_prev;
     c.junction.eye_t = at_x.pdf_next * at_y.cos_geometric * inv_r2;
     c.junction.eye_t1 = at_y.pdf_prev * y.to_prev;
-    return c;
+    return PathFailure::none;
 }
 
 }  // namespace
 
-Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
-                   std::span<const Vertex> light) {
-    if (light.empty()) return hit_emitter(tracer.scene(), eye);
-    Connection failed;
-    failed.failure = PathFailure::zero_bsdf;
-    if (eye.size() > 1 && !connectable(eye.back())) return failed;
-    if (light.size() > 1 && !connectable(light.back())) return failed;
+PathFailure connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
+                    std::span<const Vertex> light, Connection& c) {
+    if (light.empty()) return hit_emitter(tracer.scene(), eye, c);
+    if (eye.size() > 1 && !connectable(eye.back())) return PathFailure::zero_bsdf;
+    if (light.size() > 1 && !connectable(light.back())) return PathFailure::zero_bsdf;
     if (eye.size() == 1) {
-        if (light.size() == 1) return failed;
-        return see_from_sensor(tracer, window, sensor, eye.front(), light);
+        if (light.size() == 1) return PathFailure::zero_bsdf;
+        return see_from_sensor(tracer, window, sensor, eye.front(), light, c);
     }
-    if (light.size() == 1) return connect_emitter(tracer, eye, light.front());
-    return connect_surfaces(tracer, eye, light);
+    if (light.size() == 1) return connect_emitter(tracer, eye, light.front(), c);
+    return connect_surfaces(tracer, eye, light, c);
 }
 
 double mis_weight(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,

@@ -18,26 +18,27 @@ enum class PathFailure : std::uint8_t {
     non_finite
 };
 
-// Densities that the connection alone determines; i counts from the sensor.
+// Densities that the connection alone determines; i counts from the sensor. Those of vertices that the path does not
+// have are unspecified.
 struct Junction {
-    double light_t1 = 0;  // of x_{t-1}, sampled from the light side
-    double light_t2 = 0;  // of x_{t-2}
-    double eye_t = 0;     // of x_t, sampled from the eye side
-    double eye_t1 = 0;    // of x_{t+1}
+    double light_t1;  // of x_{t-1}, sampled from the light side
+    double light_t2;  // of x_{t-2}
+    double eye_t;     // of x_t, sampled from the eye side
+    double eye_t1;    // of x_{t+1}
 };
 
+// All unspecified after a failure.
 struct Connection {
-    PathFailure failure = PathFailure::none;
-    Spectrum throughput{0, 0, 0};  // f / p_t
-    Vec2 raster{0, 0};             // set where the connection decides it: t == 1
+    Spectrum throughput;  // f / p_t
+    Vec2 raster;          // set where the connection decides it: t == 1
     Junction junction;
 };
 
 // Subpaths as spans whose last vertex is the one connected. `light` may be empty (s = 0: the eye subpath must end on an
 // emitter), and `eye` may hold the sensor alone (t = 1). k = 1 is sampled by s = 0 only.
 // Everything that is cheap is tested before the shadow ray.
-Connection connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
-                   std::span<const Vertex> light);
+PathFailure connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
+                    std::span<const Vertex> light, Connection& c);
 
 // Which of a path's techniques take part in the weights.
 enum class Techniques {

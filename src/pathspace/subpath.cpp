@@ -7,7 +7,7 @@ namespace {
 
 // Fills what `next` needs after a ray from a finite vertex at `from` along unit `d` hit it. `pdf` is the solid-angle
 // density of d; `cos_from` the geometric cosine there (1 where the vertex has no surface).
-void arrive(const Vec3& from, const Vec3& d, double pdf, double cos_from, Vertex& next) {
+inline void arrive(const Vec3& from, const Vec3& d, double pdf, double cos_from, Vertex& next) {
     const double inv_r2 = 1 / (next.x.p - from).squaredNorm();
     next.w_prev = -next.x.frame.to_local(d);
     next.cos_prev = -next.x.ng.dot(d);
@@ -26,6 +26,8 @@ void arrive_from_infinity(const Vec3& d, double pdf, Vertex& next) {
     next.infinite = false;
     next.delta = false;
 }
+
+bool is_dark(const Vertex& hit, Wanted wanted) { return wanted == Wanted::emitter && !hit.x.emitter; }
 
 // `next` becomes the vertex at infinity in direction d.
 void escape(const Scene& scene, const Vec3& d, double pdf, Vertex& next) {
@@ -60,14 +62,15 @@ SensorPoint start_eye(const Scene& scene, const Vec2& u, Vertex& x0) {
 }
 
 Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vec2& raster,
-                         Vertex& x0, Vertex& x1) {
+                         Vertex& x0, Vertex& x1, Wanted wanted) {
     const SensorRay ray = tracer.scene().sensor().ray(sensor, raster);
     const double pdf = ray.raster_per_measure / window.area();
     x1.throughput = Spectrum::Constant(window.area());
-    if (!tracer.intersect({ray.o, ray.d, 0, ray.tfar}, x1.x)) {
+    if (!tracer.intersect({ray.o, ray.d, 0, ray.tfar}, x1.x, wanted)) {
         escape(tracer.scene(), ray.d, pdf, x1);
         return Extension::escaped;
     }
+    if (is_dark(x1, wanted)) return Extension::dark;
     if (x0.infinite)
         arrive_from_infinity(ray.d, pdf, x1);
     else
@@ -111,7 +114,8 @@ Extension first_light_edge(Tracer& tracer, const Vec2& u, Vertex& y0, Vertex& y1
     return Extension::surface;
 }
 
-Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& next, double u_lobe, const Vec2& u) {
+Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& next, double u_lobe, const Vec2& u,
+                 Wanted wanted) {
     if (!same_side(v.cos_prev, v.w_prev.z())) return Extension::absorbed;
     const auto s = v.x.bsdf->sample(v.x, v.w_prev, u_lobe, u, mode);
     if (!s) return Extension::absorbed;
@@ -135,10 +139,11 @@ Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& nex
     }
     prev.pdf_rev = pdf_reverse * v.to_prev;
 
-    if (!tracer.intersect(Scene::ray_from(v.x, d), next.x)) {
+    if (!tracer.intersect(Scene::ray_from(v.x, d), next.x, wanted)) {
         escape(tracer.scene(), d, pdf, next);
         return Extension::escaped;
     }
+    if (is_dark(next, wanted)) return Extension::dark;
     arrive(v.x.p, d, pdf, cos_next, next);
     return Extension::surface;
 }

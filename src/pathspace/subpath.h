@@ -21,16 +21,17 @@ struct RasterWindow {
 };
 
 enum class Extension {
-    surface,  // the next vertex lies on a surface
-    escaped,  // the ray left the scene; the next vertex is at infinity if the scene has an environment
-    absorbed  // nothing is scattered
+    surface,   // the next vertex lies on a surface
+    escaped,   // the ray left the scene; the next vertex is at infinity if the scene has an environment
+    absorbed,  // nothing is scattered
+    dark       // on a surface that emits nothing, where only emitters were wanted; the next vertex is not filled
 };
 
 // x_0 of an eye subpath. `u` is read only by sensors with an aperture.
 SensorPoint start_eye(const Scene& scene, const Vec2& u, Vertex& x0);
 // x_1, by the ray through a raster position.
 Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vec2& raster,
-                         Vertex& x0, Vertex& x1);
+                         Vertex& x0, Vertex& x1, Wanted wanted = Wanted::surface);
 
 // y_0 of a light subpath. Returns false if the scene has no emitter or the drawn point emits nothing.
 bool start_light(const Scene& scene, double u_choice, double u_part, const Vec2& u, Vertex& y0);
@@ -39,6 +40,7 @@ Extension first_light_edge(Tracer& tracer, const Vec2& u, Vertex& y0, Vertex& y1
 
 // The vertex after `v`. `u_lobe` chooses the lobe, `u` the direction. Sets v's event, prev's reverse density and `next`
 // up to its reverse density.
-Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& next, double u_lobe, const Vec2& u);
+Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& next, double u_lobe, const Vec2& u,
+                 Wanted wanted = Wanted::surface);
 
 }  // namespace keyhole

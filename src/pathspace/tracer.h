@@ -17,18 +17,17 @@ class Tracer {
 
     const Scene& scene() const { return *scene_; }
 
-    bool intersect(const Ray& ray, SurfacePoint& hit) {
+    bool intersect(const Ray& ray, SurfacePoint& hit, Wanted wanted = Wanted::surface) {
         note(ray, false);
-        return scene_->intersect(ray, hit);
+        return scene_->intersect(ray, hit, wanted);
     }
     bool unoccluded(const Ray& ray) {
         note(ray, true);
         return scene_->unoccluded(ray);
     }
-    // The open segment between two points, each offset from its surface.
-    bool visible(const Vec3& a, const Vec3& b) {
-        const Ray ray = segment(a, b);
-        return ray.tfar > 0 && unoccluded(ray);
+    // The open segment between two points, each offset from its surface; see `segment`.
+    bool visible(const Vec3& a, const Vec3& b, double inverse_length) {
+        return unoccluded(segment(a, b, inverse_length));
     }
 
     std::uint64_t rays() const { return rays_; }

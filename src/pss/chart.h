@@ -9,15 +9,16 @@
 
 namespace keyhole {
 
-// A point of the chart t of paths with k edges. Eye coordinates first, light coordinates from `light()` on; both arrays
-// have the layout's full capacity in whole lanes, of which the prefix that (k, t) uses is meaningful.
+// A point of the chart t of paths with k edges. The layout's count(k, t) coordinates, those of the eye first; there is
+// room for its capacity, in whole lanes, and what lies behind the count has no meaning.
 struct PrimarySample {
     int k = 0, t = 0;
-    std::vector<double> eye, light;
+    std::vector<double> coordinates;
 
-    explicit PrimarySample(const CoordinateLayout& layout)
-        : eye(whole_lanes(layout.eye_capacity())), light(whole_lanes(layout.light_capacity())) {}
+    explicit PrimarySample(const CoordinateLayout& layout) : coordinates(whole_lanes(layout.capacity())) {}
     int s() const { return k + 1 - t; }
+    double* data() { return coordinates.data(); }
+    const double* data() const { return coordinates.data(); }
 };
 
 // What the chain needs of T_t(u).
@@ -40,15 +41,16 @@ class Chart {
     std::span<const Vertex> eye() const { return {eye_.data(), static_cast<std::size_t>(t_)}; }
     std::span<const Vertex> light() const { return {light_.data(), static_cast<std::size_t>(s_)}; }
     const SensorPoint& sensor_point() const { return sensor_point_; }
-    const Junction& junction() const { return junction_; }
+    const Junction& junction() const { return connection_.junction; }
 
     Tracer& tracer() { return tracer_; }
     const RasterWindow& window() const { return window_; }
     const CoordinateLayout& layout() const { return *layout_; }
 
   private:
-    PathFailure trace_eye(const PrimarySample& u);
-    PathFailure trace_light(const PrimarySample& u);
+    // `u`: the subpath's coordinates.
+    PathFailure trace_eye(const double* u);
+    PathFailure trace_light(const double* u);
 
     Tracer tracer_;
     const CoordinateLayout* layout_;
@@ -56,7 +58,7 @@ class Chart {
     RasterWindow window_;
     std::vector<Vertex> eye_, light_;
     SensorPoint sensor_point_;
-    Junction junction_;
+    Connection connection_;
     Vec2 raster_{0, 0};
     int t_ = 0, s_ = 0;
 };

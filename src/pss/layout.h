@@ -3,10 +3,12 @@
 // the emitter's choice with a second emitter, lobe coordinates with BSDFs that choose among lobes.
 //
 // A path of k edges by technique t (t vertices from the eye, s = k + 1 - t from the light) uses a prefix of the eye
-// coordinates and a prefix of the light coordinates:
+// coordinates, followed by a prefix of the light coordinates:
 //     eye:   [lens 2] raster 2, then per scattering vertex  direction 2 [lobe 1]
 //     light: [emitter 1] part 1, point 2, ray 2, then per scattering vertex  direction 2 [lobe 1]
 #pragma once
+
+#include <algorithm>
 
 #include "base/vec.h"
 #include "scene/scene.h"
@@ -27,8 +29,14 @@ class CoordinateLayout {
     int eye_count(int t) const { return t <= 0 ? 0 : (t == 1 ? lens_ : lens_ + 2 + (t - 2) * block_); }
     int light_count(int s) const { return s <= 0 ? 0 : choice_ + 3 + (s == 1 ? 0 : 2 + (s - 2) * block_); }
 
-    int eye_capacity() const { return eye_count(max_length_ + 1); }
-    int light_capacity() const { return light_count(max_length_); }
+    int count(int k, int t) const { return eye_count(t) + light_count(k + 1 - t); }
+    // The largest count of any path.
+    int capacity() const {
+        int most = 0;
+        for (int t = 1; t <= max_length_ + 1; ++t) most = std::max(most, count(max_length_, t));
+        return most;
+    }
+    bool has_lens() const { return lens_ > 0; }
 
     // Readers of a subpath's coordinates `u`; absent coordinates read as 0.
     Vec2 lens(const double* u) const { return lens_ ? Vec2(u[0], u[1]) : Vec2(0, 0); }

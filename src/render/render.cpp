@@ -37,7 +37,7 @@ void check_memory(const Scene& scene, const RenderSettings& s, int threads) {
     const double of_replicates = s.error_image ? static_cast<double>(groups * replicate_count(s.mix)) : 0;
     const double films = pixels * static_cast<double>(film) * (threads + of_replicates);
     const CoordinateLayout layout(scene, s.mix.lengths.max);
-    const auto coordinates = static_cast<std::size_t>(layout.eye_capacity() + layout.light_capacity());
+    const auto coordinates = static_cast<std::size_t>(layout.capacity());
     const double states = chains ? 2.0 * s.mix.chain_count * static_cast<double>(coordinates * sizeof(double)) : 0;
     const std::uint64_t memory = physical_memory_bytes();
     if (memory == 0 || films + states <= static_cast<double>(memory)) return;

@@ -41,8 +41,8 @@ void PathSampler::sample(const Vec2& raster, Rng& rng, RadianceFilm& film) {
     const Scene& scene = tracer_.scene();
     Spectrum sum = Spectrum::Zero();
     auto add = [&](const SensorPoint& sensor, std::span<const Vertex> eye, std::span<const Vertex> light) {
-        const Connection c = connect(tracer_, window_, sensor, eye, light);
-        if (c.failure == PathFailure::none)
+        Connection c;
+        if (connect(tracer_, window_, sensor, eye, light, c) == PathFailure::none)
             sum += c.throughput * mis_weight(eye, light, c.junction, Techniques::unidirectional);
     };
     trace_eye(raster, rng, [&](const SensorPoint& sensor, int t) {
@@ -75,8 +75,8 @@ void BdptSampler::sample(const Vec2& raster, Rng& rng, RadianceFilm& film) {
     auto add = [&](const SensorPoint& sensor, int t, int s) {
         if (!lengths_.contains(s + t - 1)) return;
         const std::span<const Vertex> eye(eye_.data(), t), light(light_.data(), s);
-        const Connection c = connect(tracer_, window_, sensor, eye, light);
-        if (c.failure != PathFailure::none) return;
+        Connection c;
+        if (connect(tracer_, window_, sensor, eye, light, c) != PathFailure::none) return;
         const Spectrum contribution = c.throughput * mis_weight(eye, light, c.junction, Techniques::all);
         if (t == 1)
             splat(film, c.raster, contribution);

@@ -21,13 +21,14 @@ void analytic_bounds(const RTCBoundsFunctionArguments* args) {
 
 // The nearest hit in (tnear, tfar), or tfar if there is none.
 double query_analytic(const AnalyticShape& shape, const EmbreeScene::Context& context, float tfar) {
-    EmbreeQuery query = context.query;
+    const Ray& ray = context.ray;
+    Vec3 o = ray.o + ray.offset, d = ray.d;
     if (context.instID[0] != RTC_INVALID_GEOMETRY_ID) {
         const InstanceTransform& transform = context.scene.instance(context.instID[0]).transform;
-        query.o = transform.to_local * query.o;
-        query.d = transform.to_local.linear() * query.d;
+        o = transform.to_local * o;
+        d = transform.to_local.linear() * d;
     }
-    return shape.nearest(query.o, query.d, query.tnear, std::min<double>(query.tfar, tfar));
+    return shape.nearest(o, d, ray.tnear, std::min<double>(ray.tfar, tfar));
 }
 
 void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
@@ -35,7 +36,7 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
     const auto& context = *static_cast<const EmbreeScene::Context*>(args->context);
     auto& r = *reinterpret_cast<RTCRayHit*>(args->rayhit);  // single rays only, so N is 1
     const double t = query_analytic(*static_cast<const AnalyticShape*>(args->geometryUserPtr), context, r.ray.tfar);
-    if (!(t < r.ray.tfar && t < context.query.tfar)) return;
+    if (!(t < r.ray.tfar && t < context.ray.tfar)) return;
     r.ray.tfar = static_cast<float>(t);
     r.hit.geomID = args->geomID;
     r.hit.primID = args->primID;
@@ -47,7 +48,7 @@ void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
     const auto& context = *static_cast<const EmbreeScene::Context*>(args->context);
     auto& r = *reinterpret_cast<RTCRay*>(args->ray);
     const double t = query_analytic(*static_cast<const AnalyticShape*>(args->geometryUserPtr), context, r.tfar);
-    if (t < r.tfar && t < context.query.tfar) r.tfar = -std::numeric_limits<float>::infinity();
+    if (t < r.tfar && t < context.ray.tfar) r.tfar = -std::numeric_limits<float>::infinity();
 }
 
 bool count_bytes(void* total, ssize_t bytes, bool /*post*/) {

@@ -55,12 +55,6 @@ inline void embree_occluded(RTCScene scene, EmbreeContext& context, RTCRay& quer
 }
 #endif
 
-// One query in double precision. The direction need not be normalised.
-struct EmbreeQuery {
-    Vec3 o, d;
-    double tnear, tfar;
-};
-
 // A hierarchy: the whole scene, or a group of shapes that is seen through instances.
 class EmbreeGroup {
   public:
@@ -113,10 +107,10 @@ class EmbreeScene {
     EmbreeBounds bounds() const;
     std::size_t bytes() const { return static_cast<std::size_t>(bytes_.load()); }
 
-    // The nearest surface; null if there is none.
-    const Shape* intersect(const EmbreeQuery& query, ShapeHit& hit) const {
-        Context context(*this, query);
-        RTCRayHit r = ray_hit(query);
+    // The nearest surface; null if there is none. Rays are relative to the scene's origin.
+    const Shape* intersect(const Ray& ray, ShapeHit& hit) const {
+        Context context(*this, ray);
+        RTCRayHit r = ray_hit(ray);
         embree_intersect(top_->handle(), context, r);
         if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return nullptr;
         hit.primitive = r.hit.primID;
@@ -130,25 +124,25 @@ class EmbreeScene {
         return instance.shape ? instance.shape : instance.group->shape(r.hit.geomID);
     }
 
-    bool unoccluded(const EmbreeQuery& query) const {
-        Context context(*this, query);
+    bool unoccluded(const Ray& ray) const {
+        Context context(*this, ray);
         RTCRay r;
-        set_ray(query, r);
+        set_ray(ray, r);
         embree_occluded(top_->handle(), context, r);
         return r.tfar >= 0;  // Embree sets it to -inf at a hit
     }
 
     // What travels with a query to the callbacks of user geometry.
     struct Context : EmbreeContext {
-        Context(const EmbreeScene& s, const EmbreeQuery& q) : scene(s), query(q) { init_context(*this); }
+        Context(const EmbreeScene& s, const Ray& r) : scene(s), ray(r) { init_context(*this); }
         const EmbreeScene& scene;
-        const EmbreeQuery& query;
+        const Ray& ray;
     };
     const EmbreeInstance& instance(unsigned id) const { return *instances_[id]; }
     RTCScene handle() const { return top_->handle(); }
-    static RTCRayHit ray_hit(const EmbreeQuery& query) {
+    static RTCRayHit ray_hit(const Ray& ray) {
         RTCRayHit r;
-        set_ray(query, r.ray);
+        set_ray(ray, r.ray);
         r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         return r;
@@ -162,10 +156,10 @@ class EmbreeScene {
         std::memcpy(out, &floats, sizeof(floats));
     }
     // Four floats are stored at once, as Embree reads them: a vector load of separate stores would stall.
-    static void set_ray(const EmbreeQuery& query, RTCRay& r) {
-        store_floats(query.o, query.tnear, &r.org_x);  // and tnear
-        store_floats(query.d, 0, &r.dir_x);            // and time
-        r.tfar = static_cast<float>(query.tfar);
+    static void set_ray(const Ray& ray, RTCRay& r) {
+        store_floats(ray.o + ray.offset, ray.tnear, &r.org_x);  // and tnear
+        store_floats(ray.d, 0, &r.dir_x);                       // and time
+        r.tfar = static_cast<float>(ray.tfar);
         r.mask = ~0u;
         r.id = 0;
         r.flags = 0;

@@ -9,7 +9,7 @@ namespace keyhole {
 struct RayReplay::Queries {
     struct Query {
         RTCRayHit embree;
-        EmbreeQuery exact;  // for user geometry
+        Ray exact;  // for user geometry
         bool occlusion;
     };
     const EmbreeScene& scene;
@@ -20,8 +20,9 @@ RayReplay::RayReplay(const Scene& scene, std::span<const RecordedRay> rays)
     : queries_(new Queries{scene.embree(), {}}) {
     queries_->rays.reserve(rays.size());
     for (const RecordedRay& r : rays) {
-        const EmbreeQuery query{r.ray.o + r.ray.offset - scene.origin(), r.ray.d, r.ray.tnear, r.ray.tfar};
-        queries_->rays.push_back({EmbreeScene::ray_hit(query), query, r.occlusion});
+        Ray ray = r.ray;
+        ray.o -= scene.origin();
+        queries_->rays.push_back({EmbreeScene::ray_hit(ray), ray, r.occlusion});
     }
 }
 

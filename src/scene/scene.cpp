@@ -10,29 +10,37 @@ namespace keyhole {
 Scene::Scene() = default;
 Scene::~Scene() = default;
 
-bool Scene::intersect_shapes(const Ray& ray, SurfacePoint& x) const {
+inline bool Scene::intersect_shapes(const Ray& ray, SurfacePoint& x, Wanted wanted) const {
     ShapeHit hit;
-    const Shape* shape = embree_->intersect({ray.o + ray.offset, ray.d, ray.tnear, ray.tfar}, hit);
+    const Shape* shape = embree_->intersect(ray, hit);
     if (!shape) return false;
-    shape->fill(ray, hit, x);
     x.bsdf = shape->bsdf.get();
     x.emitter = shape->emitter.get();
+    if (wanted == Wanted::emitter && !x.emitter) return true;
+    if (shape->is_mesh) [[likely]]
+        static_cast<const MeshShape*>(shape)->fill(ray, hit, x);
+    else
+        shape->fill(ray, hit, x);
     return true;
 }
 
-bool Scene::intersect(const Ray& ray, SurfacePoint& x) const {
+bool Scene::intersect(const Ray& ray, SurfacePoint& x, Wanted wanted) const {
     if (!moved_) [[likely]]
-        return intersect_shapes(ray, x);
+        return intersect_shapes(ray, x, wanted);
     Ray moved = ray;
     moved.o -= origin_;
-    if (!intersect_shapes(moved, x)) return false;
+    if (!intersect_shapes(moved, x, wanted)) return false;
     x.p += origin_;
     x.offset += origin_rounding(origin_);
     return true;
 }
 
 bool Scene::unoccluded(const Ray& ray) const {
-    return embree_->unoccluded({ray.o + ray.offset - origin_, ray.d, ray.tnear, ray.tfar});
+    if (!moved_) [[likely]]
+        return embree_->unoccluded(ray);
+    Ray moved = ray;
+    moved.o -= origin_;
+    return embree_->unoccluded(moved);
 }
 
 std::uint32_t Scene::choose_emitter(double u) const {

@@ -19,6 +19,9 @@ namespace keyhole {
 
 class EmbreeScene;  // embree.h
 
+// What is to be known of a hit. `emitter`: of a surface that emits nothing, nothing but that.
+enum class Wanted { surface, emitter };
+
 // What a scene needs from the algorithms; nothing else is paid for.
 struct Requirements {
     BsdfTraits bsdfs;          // the union over all BSDFs in use
@@ -47,7 +50,7 @@ class Scene {
         if (!intersect(ray, *x)) x.reset();
         return x;
     }
-    bool intersect(const Ray& ray, SurfacePoint& x) const;
+    bool intersect(const Ray& ray, SurfacePoint& x, Wanted wanted = Wanted::surface) const;
     // Whether the ray is free of surfaces within (tnear, tfar).
     bool unoccluded(const Ray& ray) const;
 
@@ -92,7 +95,7 @@ class Scene {
   private:
     friend class SceneBuilder;
     Scene();
-    bool intersect_shapes(const Ray& ray, SurfacePoint& x) const;  // both relative to origin()
+    bool intersect_shapes(const Ray& ray, SurfacePoint& x, Wanted wanted) const;  // both relative to origin()
     static double side(const Vec3& ng, const Vec3& w) { return w.dot(ng) > 0 ? 1 : -1; }
 
     Vec3 origin_{0, 0, 0};

@@ -23,11 +23,11 @@ struct Ray {
 };
 
 // The open segment from a to b, which differ. Ends on surfaces must be offset (Scene).
-inline Ray segment(const Vec3& a, const Vec3& b) {
-    const Vec3 d = b - a;
-    const double length = d.norm();
-    return {a, d / length, 0, length};
+// `inverse_length` is about the inverse of their distance; the ray's direction is as close to unit length as that.
+inline Ray segment(const Vec3& a, const Vec3& b, double inverse_length) {
+    return {a, (b - a) * inverse_length, 0, 1 / inverse_length};
 }
+inline Ray segment(const Vec3& a, const Vec3& b) { return segment(a, b, 1 / (b - a).norm()); }
 
 struct Mesh {
     std::vector<Vec3f> positions;
@@ -58,6 +58,7 @@ inline float origin_rounding(const Vec3& origin) { return static_cast<float>(0x1
 
 class Shape {
   public:
+    explicit Shape(bool mesh = false) : is_mesh(mesh) {}
     virtual ~Shape() = default;
 
     // Where the ray meets the surface, in double precision: the distance (returned) and the surface there (all fields
@@ -68,6 +69,7 @@ class Shape {
     virtual double area() const = 0;
     virtual ShapeSample sample(double u_primitive, const Vec2& u) const = 0;  // pdf 1 / area()
 
+    const bool is_mesh;    // is a MeshShape
     Vec3 origin{0, 0, 0};  // of the scene: fill and sample work in coordinates relative to it
     std::string id;        // of the scene file, may be empty
     BsdfPtr bsdf;

@@ -5,8 +5,15 @@
 namespace keyhole {
 namespace {
 
-void draw_uniform(double* u, int first, int last, Rng& rng) {
-    for (int i = first; i < last; ++i) u[i] = rng.uniform();
+void draw_uniform(double* u, int n, Rng& rng) {
+    for (int i = 0; i < n; ++i) u[i] = rng.uniform();
+}
+
+// The first `n` coordinates of y, of which x has `old_n`: kept as far as x has them, the rest drawn.
+void keep_or_draw(const double* x, int old_n, double* y, int n, Rng& rng) {
+    const int kept = std::min(old_n, n);
+    std::copy_n(x, kept, y);
+    draw_uniform(y + kept, n - kept, rng);
 }
 
 Failure to_failure(PathFailure failure) {
@@ -43,9 +50,7 @@ PathFailure LargeStep::draw(PssState& y, Rng& rng) const { return draw(y, techni
 PathFailure LargeStep::draw(PssState& y, Technique technique, Rng& rng) const {
     y.u.k = technique.k;
     y.u.t = technique.t;
-    const CoordinateLayout& layout = chart_.layout();
-    draw_uniform(y.u.eye.data(), 0, layout.eye_count(y.u.t), rng);
-    draw_uniform(y.u.light.data(), 0, layout.light_count(y.u.s()), rng);
+    draw_uniform(y.u.data(), chart_.layout().count(y.u.k, y.u.t), rng);
     const Evaluation e = chart_.evaluate(y.u);
     y.set(e);
     return e.failure;
@@ -62,9 +67,7 @@ template <class Kernel>
 Proposal SmallStep<Kernel>::propose(PssState& x, PssState& y, Rng& rng) const {
     y.u.k = x.u.k;
     y.u.t = x.u.t;
-    const CoordinateLayout& layout = chart_.layout();
-    kernel_(x.u.eye.data(), y.u.eye.data(), layout.eye_count(x.u.t), rng);
-    kernel_(x.u.light.data(), y.u.light.data(), layout.light_count(x.u.s()), rng);
+    kernel_(x.u.data(), y.u.data(), chart_.layout().count(y.u.k, y.u.t), rng);
     return evaluate(chart_, x, y, 1);
 }
 
@@ -74,11 +77,9 @@ Proposal TechniqueChange::propose(PssState& x, PssState& y, Rng& rng) const {
     y.u.t = techniques_.sample_other(k, t, rng.uniform());
     const CoordinateLayout& layout = chart_.layout();
     const int eye_old = layout.eye_count(t), eye_new = layout.eye_count(y.u.t);
-    const int light_old = layout.light_count(x.u.s()), light_new = layout.light_count(y.u.s());
-    std::copy_n(x.u.eye.data(), std::min(eye_old, eye_new), y.u.eye.data());
-    std::copy_n(x.u.light.data(), std::min(light_old, light_new), y.u.light.data());
-    draw_uniform(y.u.eye.data(), eye_old, eye_new, rng);
-    draw_uniform(y.u.light.data(), light_old, light_new, rng);
+    keep_or_draw(x.u.data(), eye_old, y.u.data(), eye_new, rng);
+    keep_or_draw(x.u.data() + eye_old, layout.light_count(x.u.s()),  //
+                 y.u.data() + eye_new, layout.light_count(y.u.s()), rng);
     const double q = techniques_.probability_given_length(k, t), q_new = techniques_.probability_given_length(k, y.u.t);
     return evaluate(chart_, x, y, q * (1 - q) / (q_new * (1 - q_new)));
 }

@@ -128,8 +128,8 @@ class Adjoint : public testing::TestWithParam<Case> {
     // f of the connected path, or zero.
     Spectrum f_of(int t, int s) {
         const std::span<const Vertex> x(eye.data(), t), y(light.data(), s);
-        const Connection c = connect(tracer, window, sensor, x, y);
-        if (c.failure != PathFailure::none) return Spectrum::Zero();
+        Connection c;
+        if (connect(tracer, window, sensor, x, y, c) != PathFailure::none) return Spectrum::Zero();
         raster_ = c.raster;
         double p = 1;
         for (const Vertex& v : x) p *= v.pdf_fwd;

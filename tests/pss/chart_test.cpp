@@ -23,8 +23,7 @@ int for_sampled_paths(const Scene& scene, int tries, const Body& body) {
         PrimarySample u(layout);
         u.k = 1 + static_cast<int>(rng.below(max_length));
         u.t = u.k == 1 ? 2 : 1 + static_cast<int>(rng.below(u.k + 1));
-        for (double& c : u.eye) c = rng.uniform();
-        for (double& c : u.light) c = rng.uniform();
+        for (double& c : u.coordinates) c = rng.uniform();
         const Evaluation e = chart.evaluate(u);
         EXPECT_NE(e.failure, PathFailure::non_finite);
         if (e.failure != PathFailure::none) continue;

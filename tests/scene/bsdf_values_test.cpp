@@ -158,14 +158,27 @@ TEST(TwoSided, RefusesTransmission) {
 }
 
 TEST(TwoSided, BackIsTheMirrorImageOfTheFront) {
-    const BsdfPtr phong = make_phong(20, gray(0.4), gray(0.4)), both = make_two_sided(phong, phong);
     const auto flip = [](const Vec3& w) { return Vec3(w.x(), w.y(), -w.z()); };
     const Vec3 a = at_degrees(20), b = at_degrees(30, 3);
-    EXPECT_EQ(both->eval(flat_point(), flip(a), flip(b)).f[0], phong->eval(flat_point(), a, b).f[0]);
-    const auto front = both->sample(flat_point(), a, 0.2, {0.6, 0.7}, Mode::light);
-    const auto back = both->sample(flat_point(), flip(a), 0.2, {0.6, 0.7}, Mode::light);
-    ASSERT_TRUE(front && back);
-    EXPECT_EQ(back->w, flip(front->w));
+    for (const BsdfPtr& nested : {make_phong(20, gray(0.4), gray(0.4)), make_diffuse(gray(0.4))}) {
+        const BsdfPtr both = make_two_sided(nested, nested);
+        EXPECT_STREQ(both->name(), "twosided");
+        for (const bool below : {false, true}) {
+            const auto turned = [&](const Vec3& w) { return below ? flip(w) : w; };
+            const BsdfValue value = both->eval(flat_point(), turned(a), turned(b));
+            const BsdfValue expected = nested->eval(flat_point(), a, b);
+            EXPECT_EQ(value.f[0], expected.f[0]);
+            EXPECT_EQ(value.pdf_light, expected.pdf_light);
+            EXPECT_EQ(value.pdf_eye, expected.pdf_eye);
+            EXPECT_EQ(both->eval(flat_point(), turned(a), turned(flip(b))).f[0], 0);
+            const auto sample = both->sample(flat_point(), turned(a), 0.2, {0.6, 0.7}, Mode::light);
+            const auto front = nested->sample(flat_point(), a, 0.2, {0.6, 0.7}, Mode::light);
+            ASSERT_TRUE(front && sample);
+            EXPECT_EQ(sample->w, turned(front->w));
+            EXPECT_EQ(sample->pdf, front->pdf);
+            EXPECT_EQ(sample->pdf_reverse, front->pdf_reverse);
+        }
+    }
 }
 
 TEST(BumpMap, FlatMapChangesNothing) {

@@ -206,6 +206,36 @@ TEST(SceneBuilder, DegenerateTrianglesGiveNoNan) {
     }
 }
 
+// Far from the origin and near it: where only emitters are wanted they are found as ever, and what emits nothing is
+// known to.
+TEST(SceneQueries, OfEmittersAlone) {
+    for (const double distance : {0.0, 1e6}) {
+        SceneBuilder builder;
+        const Vec3 center(distance, 0, 0);
+        ShapeOptions lamp = placed(similarity(0.4, 1, center + Vec3(0, 0, 4)));
+        lamp.radiance = ColorInput(Spectrum(1, 2, 3));
+        builder.add_rectangle(lamp);
+        builder.add_sphere(center - Vec3(0, 0, 4), 1, {});
+        const auto scene = build_with_sensor(builder);
+        int found = 0;
+        Rng rng(3, 1);
+        for (int i = 0; i < 2000; ++i) {
+            const Ray ray{center, uniform_direction(rng)};
+            SurfacePoint x, y;
+            const bool hit = scene->intersect(ray, x);
+            ASSERT_EQ(scene->intersect(ray, y, Wanted::emitter), hit);
+            if (!hit) continue;
+            ASSERT_EQ(x.emitter, y.emitter);
+            if (!x.emitter) continue;
+            ++found;
+            ASSERT_EQ(x.p, y.p);
+            ASSERT_EQ(x.ng, y.ng);
+            ASSERT_EQ(x.offset, y.offset);
+        }
+        EXPECT_GT(found, 20);
+    }
+}
+
 TEST(SceneBuilder, RobustQueriesLeakNothing) {
     SceneBuilder builder;
     builder.set_robust(true);

@@ -59,6 +59,7 @@ std::vector<BsdfCase> cases() {
         {.name = "mask_closed", .bsdf = make_mask(lambert, 1)},
         {.name = "mask_open", .bsdf = make_mask(lambert, 0), .lossless_front = true, .lossless_back = true},
         {.name = "two_sided", .bsdf = make_two_sided(glossy_phong(), lambert)},
+        {.name = "two_sided_diffuse", .bsdf = make_two_sided(lambert, lambert)},
         {.name = "two_sided_white",
          .bsdf = make_two_sided(white_wall, mirror),
          .lossless_front = true,

@@ -67,7 +67,7 @@ TEST_P(ChainOfLengthTwelve, CostsLessThanEightKilobytes) {
     const std::uint64_t before = allocated_bytes;
     const Chain<PssState> chain(start);
     const std::uint64_t states = allocated_bytes - before;
-    EXPECT_GE(states, 2 * sizeof(double) * (layout.eye_capacity() + layout.light_capacity()));
+    EXPECT_GE(states, 2 * sizeof(double) * layout.capacity());
     constexpr std::size_t followed = sizeof(RunningMean) + sizeof(StateMoments<3>) + 3 * sizeof(std::uint64_t);
     EXPECT_LT(states + sizeof(chain) + sizeof(Rng) + followed, 8192u);
 }

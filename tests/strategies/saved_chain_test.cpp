@@ -22,19 +22,14 @@ struct Record {
 // random numbers.
 struct Saved {
     int k, t;
-    std::vector<double> eye, light;
+    std::vector<double> coordinates;
     double held;
     Rng::State random;
 };
 
 Saved save(const Chain<PssState>& chain, const Rng& rng, const CoordinateLayout& layout) {
     const PrimarySample& u = chain.current().u;
-    return {u.k,
-            u.t,
-            {u.eye.begin(), u.eye.begin() + layout.eye_count(u.t)},
-            {u.light.begin(), u.light.begin() + layout.light_count(u.s())},
-            chain.held(),
-            rng.state()};
+    return {u.k, u.t, {u.data(), u.data() + layout.count(u.k, u.t)}, chain.held(), rng.state()};
 }
 
 // Coordinates that were not saved are filled with numbers that any use of them would show.
@@ -42,10 +37,8 @@ Chain<PssState> restore(const Saved& saved, Chart& chart) {
     PssState state(chart.layout());
     state.u.k = saved.k;
     state.u.t = saved.t;
-    std::fill(state.u.eye.begin(), state.u.eye.end(), -1e30);
-    std::fill(state.u.light.begin(), state.u.light.end(), -1e30);
-    std::copy(saved.eye.begin(), saved.eye.end(), state.u.eye.begin());
-    std::copy(saved.light.begin(), saved.light.end(), state.u.light.begin());
+    std::fill(state.u.coordinates.begin(), state.u.coordinates.end(), -1e30);
+    std::copy(saved.coordinates.begin(), saved.coordinates.end(), state.u.data());
     state.set(chart.evaluate(state.u));
     return Chain<PssState>(state, saved.held);
 }

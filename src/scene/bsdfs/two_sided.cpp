@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "scene/bsdfs.h"
+#include "scene/bsdfs/diffuse.h"
 #include "scene/bsdfs/lobe_choice.h"
 
 namespace keyhole {
@@ -42,6 +42,8 @@ class TwoSided final : public Bsdf {
 }  // namespace
 
 BsdfPtr make_two_sided(BsdfPtr front, BsdfPtr back) {
+    if (front == back)
+        if (BsdfPtr diffuse = diffuse_on_both_sides(*front)) return diffuse;
     return std::make_shared<TwoSided>(std::move(front), std::move(back));
 }
 

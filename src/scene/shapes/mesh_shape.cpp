@@ -16,11 +16,6 @@ constexpr double float_ulp = 0x1p-24;  // largest relative rounding error of a f
 
 Vec3 lift(const Vec3f& v) { return v.cast<double>(); }
 
-// A ray that ends on a plane is tested against it from afar, with coordinates that are larger by the ray D. By the
-// worst case below that adds weight.(20 |D|): 1 for the rounding of its origin, 8 for the products with what points
-// from there to the triangle, 11 for those with its direction and for its length.
-constexpr float target_share = 20 / 16.f;
-
 // Of a product e1 x e2: the sum of the magnitudes that each component is the difference of.
 Vec3 cross_magnitude(const Vec3& e1, const Vec3& e2) {
     const Vec3 a = e1.cwiseAbs(), b = e2.cwiseAbs();
@@ -29,9 +24,7 @@ Vec3 cross_magnitude(const Vec3& e1, const Vec3& e2) {
 
 }  // namespace
 
-struct MeshShape::Triangle {
-    Vec3 v0, e1, e2;
-
+struct MeshShape::Triangle : Corner {
     Vec3 cross() const { return e1.cross(e2); }
 
     // Barycentric coordinates of the second and third corner at p; n is any normal.
@@ -55,7 +48,11 @@ struct MeshShape::Triangle {
 };
 
 MeshShape::MeshShape(std::shared_ptr<const Mesh> mesh, const Affine& to_world, bool face_normals, Seen seen)
-    : mesh_(std::move(mesh)), positions_(mesh_->positions), uvs_(mesh_->uvs), triangles_(mesh_->triangles) {
+    : Shape(true),
+      mesh_(std::move(mesh)),
+      positions_(mesh_->positions),
+      uvs_(mesh_->uvs),
+      triangles_(mesh_->triangles) {
     if (!face_normals) normals_ = mesh_->normals;
     copy_transformed(to_world);
     collapse_degenerate_triangles();
@@ -63,7 +60,8 @@ MeshShape::MeshShape(std::shared_ptr<const Mesh> mesh, const Affine& to_world, b
 }
 
 MeshShape::MeshShape(const MeshShape& storage, bool face_normals)
-    : mesh_(storage.mesh_),
+    : Shape(true),
+      mesh_(storage.mesh_),
       positions_(storage.positions_),
       normals_(face_normals ? std::span<const Vec3f>() : storage.normals_),
       uvs_(storage.uvs_),
@@ -121,40 +119,18 @@ MeshShape::Triangle MeshShape::triangle(std::uint32_t primitive, const InstanceT
         v[k] = lift(positions_[index[k]]);
         if (instance) v[k] = instance->to_world * v[k];
     }
-    return {v[0], v[1] - v[0], v[2] - v[0]};
+    return {{v[0], v[1] - v[0], v[2] - v[0]}};
 }
 
-double MeshShape::fill(const Ray& ray, const ShapeHit& hit, SurfacePoint& x) const {
-    Vec3 n;
-    double c;
-    if (!hit.instance) [[likely]] {
-        n = planes_[hit.primitive].n;
-        c = planes_[hit.primitive].c;
-    } else {
-        const Triangle f = triangle(hit.primitive, hit.instance);
-        n = f.cross().normalized();
-        c = n.dot(f.v0);
-    }
-    double t = (c - n.dot(ray.o)) / n.dot(ray.d);
-    // A ray in the plane has no distance to it, and one along it may start behind it by the query's error.
-    if (!(t > ray.tnear && t < ray.tfar)) t = hit.t;
-    x.p = ray.o + t * ray.d;
-    // Its rounding error grows with the ray's coordinates; the bound below only with the plane's, so back to the plane.
-    x.p += (c - n.dot(x.p)) * n;
+double MeshShape::fill_through_instance(const Ray& ray, const ShapeHit& hit, SurfacePoint& x) const {
+    const Triangle f = triangle(hit.primitive, hit.instance);
+    const Vec3 n = f.cross().normalized();
+    const Plane plane{.n = n, .c = n.dot(f.v0), .bound = {}, .bound0 = 0};
+    const double t = plane.meet(ray, hit.t);
+    x.p = plane.put_back(ray.o + t * ray.d);
     x.ng = n;
-    if (!hit.instance) [[likely]] {
-        const Plane& plane = planes_[hit.primitive];
-        x.offset = plane.bound.dot(x.p.cast<float>().cwiseAbs()) + plane.bound0;
-        x.offset_per_length = target_share * plane.bound.sum();
-    } else {
-        set_instance_offset(hit.primitive, *hit.instance, x);
-    }
-    if (normals_.empty() && !needs_uv && !needs_tangents) {
-        if (flip_normals) x.ng = -x.ng;
-        x.frame = Frame::from_normal(x.ng);
-    } else {
-        set_frame(hit, x);
-    }
+    set_instance_offset(hit.primitive, *hit.instance, x);
+    set_frame(hit, x);
     return t;
 }
 
@@ -170,11 +146,12 @@ void MeshShape::set_instance_offset(std::uint32_t primitive, const InstanceTrans
     const double local_per_length =
         (weight.transpose() * (instance.to_local.linear().cwiseAbs() + instance.magnitude)).sum();
     x.offset = static_cast<float>(local * to_world);
-    x.offset_per_length = static_cast<float>(16 * target_share * local_per_length * to_world);
+    x.offset_per_length = static_cast<float>(16 * Plane::target_share * local_per_length * to_world);
 }
 
 // x.ng is the triangle's; the shading normal decides its side.
 void MeshShape::set_frame(const ShapeHit& hit, SurfacePoint& x) const {
+    if (flat()) return set_flat_frame(x);
     const Triangle f = triangle(hit.primitive, hit.instance);
     const Vec2 b = f.barycentrics(x.p, x.ng);
     Vec3 n;
@@ -236,9 +213,13 @@ void MeshShape::set_tangents(const Triangle& f, std::uint32_t primitive, const V
 void MeshShape::prepare_sampling() {
     area_cdf_.clear();
     area_cdf_.reserve(triangles_.size());
+    corners_.clear();
+    corners_.reserve(triangles_.size());
     area_ = 0;
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-        area_ += triangle(i, nullptr).cross().norm() / 2;
+        const Triangle f = triangle(i, nullptr);
+        corners_.push_back(f);
+        area_ += f.cross().norm() / 2;
         area_cdf_.push_back(area_);
     }
     if (!(area_ > 0)) throw std::invalid_argument("mesh: an emitter needs a surface area greater than zero");
@@ -249,12 +230,11 @@ void MeshShape::prepare_sampling() {
 ShapeSample MeshShape::sample(double u_primitive, const Vec2& u) const {
     const auto found = std::upper_bound(area_cdf_.begin(), area_cdf_.end(), u_primitive * area_);
     const auto primitive = std::min(static_cast<std::uint32_t>(found - area_cdf_.begin()), last_with_area_);
-    const Triangle f = triangle(primitive, nullptr);
+    const Corner& f = corners_[primitive];
     const Plane& plane = planes_[primitive];
     const Vec2 b = square_to_triangle(u);
     ShapeSample s{f.v0 + b.x() * f.e1 + b.y() * f.e2, plane.n, needs_uv ? uv(primitive, b) : Vec2(0, 0)};
-    s.offset = plane.bound.dot(s.p.cast<float>().cwiseAbs()) + plane.bound0;
-    s.offset_per_length = target_share * plane.bound.sum();
+    plane.set_offset(s.p, s);
     Vec3 n;
     const bool smooth = !normals_.empty() && shading_normal(primitive, nullptr, b, n);
     if (smooth ? n.dot(s.ng) < 0 : flip_normals) s.ng = -s.ng;
@@ -297,7 +277,7 @@ void check_mesh(const Mesh& mesh) {
 std::size_t MeshShape::own_bytes() const {
     return (own_positions_.size() + own_normals_.size()) * sizeof(Vec3f) +
            own_triangles_.size() * sizeof(triangles_[0]) + planes_.size() * sizeof(Plane) +
-           area_cdf_.size() * sizeof(double);
+           area_cdf_.size() * (sizeof(double) + sizeof(Corner));
 }
 
 }  // namespace keyhole
