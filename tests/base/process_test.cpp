@@ -31,7 +31,9 @@ TEST(Process, PeakMemoryGrowsWithWhatIsTouched) {
     }
     // More than the whole process held before, so the block alone must have raised the peak; a peak never falls.
     EXPECT_GE(peak_memory_bytes(), before + size / 2);
+#ifndef KEYHOLE_THREAD_SANITIZER  // its shadow memory is several times what it shadows
     EXPECT_LT(peak_memory_bytes(), before + 4 * size);
+#endif
 }
 
 TEST(Process, PhysicalMemoryHoldsThisProcess) { EXPECT_GT(physical_memory_bytes(), peak_memory_bytes()); }

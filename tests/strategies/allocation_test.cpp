@@ -11,17 +11,22 @@
 
 namespace {
 std::atomic<std::uint64_t> allocations{0}, allocated_bytes{0};
+
+void* allocate(std::size_t size) {
+    ++allocations;
+    allocated_bytes += size;
+    return std::malloc(size);
 }
+}  // namespace
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // g++ does not see that both operators are replaced
 #endif
 void* operator new(std::size_t size) {
-    ++allocations;
-    allocated_bytes += size;
-    if (void* p = std::malloc(size)) return p;
+    if (void* p = allocate(size)) return p;
     throw std::bad_alloc();
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
