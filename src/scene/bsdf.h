@@ -30,13 +30,32 @@ struct BsdfValue {
 };
 
 struct BsdfSample {
-    Vec3 w;           // the sampled direction, local
-    Spectrum weight;  // f * |cos theta(w)| / pdf; for a delta lobe its coefficient over its probability
-    double pdf;       // solid-angle density over all smooth lobes; for a delta lobe its probability
-    double pdf_reverse;  // the same with the two directions exchanged
-    double eta = 1;      // index of refraction on w's side over the one on the known direction's side
+    Vec3 w;                 // the sampled direction, local
+    Spectrum weight;        // f * |cos theta(w)| / pdf; for a delta lobe its coefficient over its probability
+    double pdf;             // solid-angle density over all smooth lobes; for a delta lobe its probability
+    double pdf_reverse;     // the same with the two directions exchanged
+    double eta = 1;         // index of refraction on w's side over the one on the known direction's side
     std::uint8_t lobe = 0;  // index of the chosen lobe, for reports and inverses
     bool delta = false;
+};
+
+// What happened at a path's vertex, apart from the directions.
+struct BsdfEvent {
+    bool delta = false;
+    std::uint8_t lobe = 0;  // of a delta event: BsdfSample::lobe, the same seen from both ends of the path
+};
+
+// The numbers that `sample` reads.
+struct BsdfNumbers {
+    double lobe = 0;
+    Vec2 direction{0, 0};
+};
+
+// Fresh uniform numbers of [0, 1) for an inverse that is not unique.
+struct InverseNumbers {
+    double branch = 0;     // which of the lobes that can draw a direction did
+    double place = 0;      // where in that lobe's interval the lobe number lies
+    Vec2 direction{0, 0};  // for a lobe that does not read them
 };
 
 // What a BSDF has and asks for; a scene's requirements are the union over its BSDFs.
@@ -62,6 +81,12 @@ class Bsdf {
     // `u` the direction within it; all in [0,1). Empty where nothing can be scattered.
     virtual std::optional<BsdfSample> sample(const SurfacePoint& x, const Vec3& w_known, double u_lobe, const Vec2& u,
                                              Mode mode) const = 0;
+
+    // The inverse of `sample`: numbers by which it draws `w`, in a distribution such that uniform numbers, sampled and
+    // inverted, are uniform again. So the smooth lobe is drawn from the posterior c_l p_l(w) / p(w), never from the
+    // probabilities c_l alone (theory, section 4). Empty where `sample` never draws `w` in such an event.
+    virtual std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w,
+                                              const BsdfEvent& event, const InverseNumbers& v, Mode mode) const = 0;
 
     virtual const char* name() const = 0;  // the plugin's name in scene files
 

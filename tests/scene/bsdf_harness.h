@@ -63,6 +63,14 @@ testing::AssertionResult conserves_energy(const BsdfCase& c);
 // to the traits; exactly grazing directions evaluate to zero.
 testing::AssertionResult survives_extremes(const BsdfCase& c);
 
+// Numbers from `invert` give the sample back: the same lobe where it is a delta lobe, the direction to 1e-7 of the lobe's
+// width, the density to 1e-5 relative.
+testing::AssertionResult inverse_gives_the_sample(const BsdfCase& c);
+
+// Uniform numbers that give a sample, and numbers from `invert` of such samples, have one distribution: chi-square of two
+// samples over the cube of the three numbers, at bsdf_test_level.
+testing::AssertionResult inverse_numbers_are_uniform(const BsdfCase& c);
+
 // The lobe number chooses the lobe and nothing else; without `chooses_lobe` it has no effect at all.
 testing::AssertionResult lobe_number_only_chooses(const BsdfCase& c);
 

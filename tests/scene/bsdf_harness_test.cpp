@@ -14,6 +14,8 @@ TEST_P(BsdfTest, IsReciprocalUnlessStated) {
 }
 TEST_P(BsdfTest, ConservesEnergy) { EXPECT_TRUE(conserves_energy(GetParam())); }
 TEST_P(BsdfTest, SurvivesExtremes) { EXPECT_TRUE(survives_extremes(GetParam())); }
+TEST_P(BsdfTest, InverseGivesTheSample) { EXPECT_TRUE(inverse_gives_the_sample(GetParam())); }
+TEST_P(BsdfTest, InverseNumbersAreUniform) { EXPECT_TRUE(inverse_numbers_are_uniform(GetParam())); }
 TEST_P(BsdfTest, LobeNumberOnlyChooses) { EXPECT_TRUE(lobe_number_only_chooses(GetParam())); }
 
 }  // namespace keyhole

@@ -43,9 +43,36 @@ class Blend final : public Bsdf {
         return s;
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode mode) const override {
+        const double t = weight_at(x), border = 1 - t;
+        BsdfEvent nested = event;
+        InverseNumbers numbers = v;
+        bool takes_first;
+        if (event.delta) {
+            takes_first = event.lobe < first_->traits().lobes;
+            if (!takes_first) nested.lobe = static_cast<std::uint8_t>(event.lobe - first_->traits().lobes);
+            if (!((takes_first ? border : t) > 0)) return std::nullopt;
+        } else {
+            const double first = border * pdf(*first_, x, w_known, w, mode),
+                         second = t * pdf(*second_, x, w_known, w, mode);
+            if (!(first + second > 0)) return std::nullopt;
+            const double p = share(first, second);
+            takes_first = v.branch < p;
+            numbers.branch = takes_first ? position_in_interval(v.branch, 0, p) : position_in_interval(v.branch, p, 1);
+        }
+        auto n = (takes_first ? *first_ : *second_).invert(x, w_known, w, nested, numbers, mode);
+        if (n) n->lobe = takes_first ? number_in_interval(n->lobe, 0, border) : number_in_interval(n->lobe, border, 1);
+        return n;
+    }
+
     const char* name() const override { return "blendbsdf"; }
 
   private:
+    static double pdf(const Bsdf& bsdf, const SurfacePoint& x, const Vec3& w_known, const Vec3& w, Mode mode) {
+        return mode == Mode::eye ? bsdf.eval(x, w_known, w).pdf_light : bsdf.eval(x, w, w_known).pdf_eye;
+    }
+
     // Turns the smooth sample of a BSDF of probability p into one of its mixture with `other`.
     static void add_other(BsdfSample& s, const SurfacePoint& x, const Vec3& w_known, const Bsdf& other, double p,
                           Mode mode) {

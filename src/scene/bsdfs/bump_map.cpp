@@ -42,6 +42,14 @@ class BumpMap final : public Bsdf {
         return s;
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode mode) const override {
+        const Frame frame = displaced_frame(x);
+        const Vec3 known = frame.to_local(w_known), nested_w = frame.to_local(w);
+        if (!same_side(known, w_known) || !same_side(nested_w, w)) return std::nullopt;
+        return nested_->invert(x, known, nested_w, event, v, mode);
+    }
+
     const char* name() const override { return "bumpmap"; }
 
   private:

@@ -21,6 +21,12 @@ class Conductor final : public DeltaBsdf {
         return delta_sample(reflect(w_known), weight, 1);
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint&, const Vec3& w_known, const Vec3&, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode) const override {
+        if (!event.delta || !(w_known.z() > 0)) return std::nullopt;
+        return BsdfNumbers{v.place, v.direction};
+    }
+
     const char* name() const override { return "conductor"; }
 
   private:

@@ -31,6 +31,14 @@ class Diffuse final : public Bsdf {
         return BsdfSample{{w.x(), w.y(), side * w.z()}, reflectance_(x.uv), w.z() * inv_pi, cos_known * inv_pi};
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint&, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode) const override {
+        const double side = side_of(w_known);
+        const Vec3 above(w.x(), w.y(), side * w.z());
+        if (event.delta || !(side * w_known.z() > 0 && above.z() > 0 && traits_.smooth)) return std::nullopt;
+        return BsdfNumbers{v.place, cosine_hemisphere_to_square(above)};
+    }
+
     const char* name() const override { return two_sided_ ? "twosided" : "diffuse"; }
     BsdfPtr on_both_sides() const { return std::make_shared<Diffuse>(reflectance_, true); }
 

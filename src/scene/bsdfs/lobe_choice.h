@@ -1,6 +1,7 @@
 // Choosing between lobes with one number.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 
@@ -14,6 +15,12 @@ namespace keyhole {
 // nothing about it, so a sequence of choices splits [0, 1) into one interval per final lobe, and an inverse draws the
 // number uniformly in that interval.
 inline double position_in_interval(double u, double begin, double end) { return clamp01((u - begin) / (end - begin)); }
+
+// Its inverse: the number of [begin, end) at a position of [0, 1).
+inline double number_in_interval(double position, double begin, double end) {
+    const double u = begin + position * (end - begin);
+    return u < end ? u : std::nextafter(end, begin);
+}
 
 // Probability of the first of two lobes of powers a and b >= 0 in proportion to them; NaN if both are 0.
 inline double share(double a, double b) { return a / (a + b); }

@@ -40,6 +40,21 @@ class Mask final : public Bsdf {
         return s;
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode mode) const override {
+        const double opacity = opacity_at(x), transparency = 1 - opacity;
+        if (event.delta && event.lobe == 0) {
+            if (!(transparency > 0)) return std::nullopt;
+            return BsdfNumbers{number_in_interval(v.place, 0, transparency), v.direction};
+        }
+        if (!(opacity > 0)) return std::nullopt;
+        BsdfEvent nested = event;
+        if (event.delta) --nested.lobe;
+        auto n = nested_->invert(x, w_known, w, nested, v, mode);
+        if (n) n->lobe = number_in_interval(n->lobe, transparency, 1);
+        return n;
+    }
+
     const char* name() const override { return "mask"; }
 
   private:

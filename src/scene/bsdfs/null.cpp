@@ -14,6 +14,12 @@ class Null final : public DeltaBsdf {
         return delta_sample(-w_known, Spectrum::Ones(), 1);
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint&, const Vec3&, const Vec3&, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode) const override {
+        if (!event.delta) return std::nullopt;
+        return BsdfNumbers{v.place, v.direction};
+    }
+
     const char* name() const override { return "null"; }
 };
 

@@ -39,6 +39,21 @@ class Phong final : public Bsdf {
         return BsdfSample{w, v.f * (w.z() / v.pdf_light), v.pdf_light, v.pdf_eye, 1, lobe, false};
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode) const override {
+        if (event.delta || !(w_known.z() > 0 && w.z() > 0)) return std::nullopt;
+        const Parameters p = parameters(x);
+        const Frame mirror = Frame::from_normal(reflect(w_known));
+        const Vec3 about_mirror = mirror.to_local(w);
+        const double c = p.specular_probability;
+        const double specular = c * square_to_cosine_power_pdf(about_mirror, p.exponent);
+        const double diffuse = (1 - c) * square_to_cosine_hemisphere_pdf(w);
+        if (!(specular + diffuse > 0)) return std::nullopt;
+        if (v.branch < share(specular, diffuse))
+            return BsdfNumbers{number_in_interval(v.place, 0, c), cosine_power_to_square(about_mirror, p.exponent)};
+        return BsdfNumbers{number_in_interval(v.place, c, 1), cosine_hemisphere_to_square(w)};
+    }
+
     const char* name() const override { return "phong"; }
 
   private:

@@ -53,6 +53,17 @@ class Plastic final : public Bsdf {
                           1, false};
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint&, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode) const override {
+        if (!(w_known.z() > 0 && w.z() > 0)) return std::nullopt;
+        const DielectricFresnel fresnel = fresnel_dielectric(w_known.z(), eta_);
+        const double specular = specular_power(fresnel), diffuse = diffuse_power(fresnel);
+        if (!((event.delta ? specular : diffuse) > 0)) return std::nullopt;
+        const double p = share(specular, diffuse);
+        if (event.delta) return BsdfNumbers{number_in_interval(v.place, 0, p), v.direction};
+        return BsdfNumbers{number_in_interval(v.place, p, 1), cosine_hemisphere_to_square(w)};
+    }
+
     const char* name() const override { return "plastic"; }
 
   private:

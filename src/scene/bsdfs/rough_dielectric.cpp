@@ -1,5 +1,6 @@
 // Rough dielectric boundary: single reflection or refraction at the facets [Walter et al. 2007, eq. 19-21].
 #include "base/error.h"
+#include "scene/bsdfs/lobe_choice.h"
 #include "scene/fresnel.h"
 #include "scene/microfacet.h"
 
@@ -64,6 +65,22 @@ class RoughDielectric final : public Bsdf {
         const double radiance_scale = mode == Mode::eye ? 1 / (eta * eta) : 1;
         s.weight = transmittance_(x.uv) * (std::abs(s.w.z()) / area_other * radiance_scale);
         return s;
+    }
+
+    std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode) const override {
+        const double sides = w_known.z() * w.z();
+        if (event.delta || sides == 0) return {};
+        const double eta = w_known.z() > 0 ? eta_ : 1 / eta_;
+        const Vec3 above = w_known.z() > 0 ? w_known : Vec3(-w_known);
+        const Vec3 h = sides > 0 ? Vec3(w_known + w) : Vec3(w_known + eta * w);
+        const Vec3 m = h * (std::copysign(1.0, h.z()) / h.norm());
+        const double cos_m = std::min(above.dot(m), 1.0);
+        if (!(cos_m > 0)) return {};
+        const double p = fresnel_dielectric(cos_m, eta).reflectance;
+        if (!((sides > 0 ? p : 1 - p) > 0)) return {};
+        return BsdfNumbers{sides > 0 ? number_in_interval(v.place, 0, p) : number_in_interval(v.place, p, 1),
+                           roughness_.at(x.uv).visible_to_square(above, m)};
     }
 
     const char* name() const override { return "roughdielectric"; }

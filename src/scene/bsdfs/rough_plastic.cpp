@@ -5,6 +5,7 @@
 // version divides by (1 - R_i) instead and so keeps the colour of the base.
 #include "base/error.h"
 #include "base/warp.h"
+#include "scene/bsdfs/lobe_choice.h"
 #include "scene/bsdfs/rough_transmittance.h"
 #include "scene/fresnel.h"
 #include "scene/microfacet.h"
@@ -48,6 +49,19 @@ class RoughPlastic final : public Bsdf {
         if (!(s.pdf > 0)) return {};
         s.weight = value.f * (s.w.z() / s.pdf);
         return s;
+    }
+
+    std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode) const override {
+        if (event.delta || !(w_known.z() > 0 && w.z() > 0)) return {};
+        const double p = Layers{diffuse_(x.uv), specular_(x.uv)}.coat_probability((*transmittance_)(w_known.z()));
+        const double of_coat = p * facet_reflection(microfacet_, w_known, w).pdf_light;
+        const double of_base = (1 - p) * square_to_cosine_hemisphere_pdf(w);
+        if (!(of_coat + of_base > 0)) return {};
+        if (v.branch < share(of_coat, of_base))
+            return BsdfNumbers{number_in_interval(v.place, 0, p),
+                               microfacet_.visible_to_square(w_known, (w_known + w).normalized())};
+        return BsdfNumbers{number_in_interval(v.place, p, 1), cosine_hemisphere_to_square(w)};
     }
 
     const char* name() const override { return "roughplastic"; }

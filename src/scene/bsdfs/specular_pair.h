@@ -35,6 +35,16 @@ class SpecularPair : public DeltaBsdf {
         return delta_sample(w_transmitted, transmittance_(x.uv) * (transmitted * radiance_scale / q), q, eta, 1);
     }
 
+    // The inverse: a number by which choose() takes the lobe of the event.
+    std::optional<BsdfNumbers> invert_choice(double reflected, double transmitted, const BsdfEvent& event,
+                                             const InverseNumbers& v) const {
+        const double reflection = reflected * reflection_power_, transmission = transmitted * transmission_power_;
+        if (!event.delta || !((event.lobe == 0 ? reflection : transmission) > 0)) return std::nullopt;
+        const double p = share(reflection, transmission);
+        return BsdfNumbers{event.lobe == 0 ? number_in_interval(v.place, 0, p) : number_in_interval(v.place, p, 1),
+                           v.direction};
+    }
+
   private:
     ColorInput reflectance_, transmittance_;
     double reflection_power_, transmission_power_;

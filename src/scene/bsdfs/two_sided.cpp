@@ -33,6 +33,12 @@ class TwoSided final : public Bsdf {
         return s;
     }
 
+    std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
+                                      const InverseNumbers& v, Mode mode) const override {
+        if (w_known.z() > 0) return front_->invert(x, w_known, w, event, v, mode);
+        return back_->invert(x, flipped(w_known), flipped(w), event, v, mode);
+    }
+
     const char* name() const override { return "twosided"; }
 
   private:
