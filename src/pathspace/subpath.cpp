@@ -88,6 +88,7 @@ bool start_light(const Scene& scene, double u_choice, double u_part, const Vec2&
     y0.x.uv = e.uv;
     y0.x.offset = e.offset;
     y0.x.offset_per_length = e.offset_per_length;
+    y0.x.primitive = e.primitive;
     y0.x.bsdf = nullptr;
     y0.x.emitter = &emitter;
     y0.pdf_fwd = e.pdf * scene.emitter_probability(&emitter);

@@ -33,7 +33,7 @@ struct Vertex {
 };
 
 inline EmitterPoint emitter_point(const Vertex& v) {
-    return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset, v.x.offset_per_length};
+    return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset, v.x.offset_per_length, v.x.primitive};
 }
 
 // Whether shading and geometric side of a direction agree. Where they do not, every strategy rejects.

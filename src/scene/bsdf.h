@@ -13,6 +13,7 @@
 
 #include "base/spectrum.h"
 #include "base/vec.h"
+#include "scene/inverse_numbers.h"
 #include "scene/surface.h"
 
 namespace keyhole {
@@ -49,13 +50,6 @@ struct BsdfEvent {
 struct BsdfNumbers {
     double lobe = 0;
     Vec2 direction{0, 0};
-};
-
-// Fresh uniform numbers of [0, 1) for an inverse that is not unique.
-struct InverseNumbers {
-    double branch = 0;     // which of the lobes that can draw a direction did
-    double place = 0;      // where in that lobe's interval the lobe number lies
-    Vec2 direction{0, 0};  // for a lobe that does not read them
 };
 
 // What a BSDF has and asks for; a scene's requirements are the union over its BSDFs.

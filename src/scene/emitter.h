@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "base/spectrum.h"
 #include "base/vec.h"
+#include "scene/inverse_numbers.h"
 
 namespace keyhole {
 
@@ -16,6 +18,13 @@ struct EmitterPoint {
     Vec2 uv{0, 0};
     double pdf = 0;  // density given the emitter: area; at infinity: solid angle; 1 where `delta`
     float offset = 0, offset_per_length = 0;  // area emitters: as SurfacePoint's
+    std::uint32_t primitive = 0;  // area emitters: of the shape
+};
+
+// The numbers that Emitter::sample_point reads.
+struct EmitterNumbers {
+    double part = 0;
+    Vec2 point{0, 0};
 };
 
 struct EmissionRay {
@@ -39,8 +48,13 @@ class Emitter {
     // Density of that endpoint, in the measure of EmitterPoint::pdf; 0 for delta emitters.
     virtual double pdf_point(const EmitterPoint& e) const = 0;
 
+    // Its inverse: numbers that draw the endpoint. Empty where none do.
+    virtual std::optional<EmitterNumbers> invert_point(const EmitterPoint& e, const InverseNumbers& v) const = 0;
+
     // The ray that leaves the endpoint.
     virtual EmissionRay sample_ray(const EmitterPoint& e, const Vec2& u) const = 0;
+    // Its inverse: numbers that draw the ray which meets `x`. Empty where none do.
+    virtual std::optional<Vec2> invert_ray(const EmitterPoint& e, const Vec3& x) const = 0;
     // Its density in the measure of EmissionRay::pdf. `w` is a unit direction leaving the emitter.
     virtual double pdf_ray(const EmitterPoint& e, const Vec3& w) const = 0;
 

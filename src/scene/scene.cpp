@@ -49,4 +49,9 @@ std::uint32_t Scene::choose_emitter(double u) const {
     return static_cast<std::uint32_t>(found - emitter_cdf_.begin());
 }
 
+double Scene::invert_choice(const Emitter& emitter, double place) const {
+    const std::uint32_t i = emitter.index();
+    return number_in_interval(place, i > 0 ? emitter_cdf_[i - 1] : 0, emitter_cdf_[i]);
+}
+
 }  // namespace keyhole

@@ -75,6 +75,8 @@ class Scene {
     std::span<const Emitter* const> emitters() const { return emitters_; }
     // Index of the chosen emitter for u in [0,1).
     std::uint32_t choose_emitter(double u) const;
+    // Its inverse: a number by which the emitter is chosen, at `place` in its interval.
+    double invert_choice(const Emitter& emitter, double place) const;
     double emitter_probability(const Emitter* emitter) const { return emitter->selection_probability(); }
     const Emitter* environment() const { return environment_; }
 

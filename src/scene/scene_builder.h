@@ -14,8 +14,8 @@ struct ShapeOptions {
     std::string id;
     Affine to_world = Affine::Identity();
     bool flip_normals = false;
-    bool face_normals = false;       // meshes: ignore vertex normals
-    BsdfPtr bsdf;                    // null: diffuse, reflectance 0.5 (Mitsuba's default)
+    bool face_normals = false;           // meshes: ignore vertex normals
+    BsdfPtr bsdf;                        // null: diffuse, reflectance 0.5 (Mitsuba's default)
     std::optional<ColorInput> radiance;  // makes the shape an area emitter
 };
 

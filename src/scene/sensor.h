@@ -19,7 +19,7 @@ struct SensorPoint {
 };
 
 struct SensorRay {
-    Vec3 o, d;  // o lies on the near plane, d is unit length
+    Vec3 o, d;                                              // o lies on the near plane, d is unit length
     double tfar = std::numeric_limits<double>::infinity();  // from o to the far plane
     double raster_per_measure = 0;                          // as SensorView's
 };
@@ -28,8 +28,8 @@ struct SensorRay {
 struct SensorView {
     Vec2 raster;
     Vec3 o;             // where the ray towards the point leaves the sensor (near plane)
-    double importance;  // raster area per solid angle at the endpoint (orthographic: per area perpendicular to the ray),
-                        // times the aperture's density: the We * cos of the theory page
+    double importance;  // raster area per solid angle at the endpoint (orthographic: per area perpendicular to the
+                        // ray), times the aperture's density: the We * cos of the theory page
     double raster_per_measure;  // raster area per solid angle (orthographic: per perpendicular area) alone; times the
                                 // density of the raster position it is the density of the ray
 };
@@ -43,6 +43,8 @@ class Sensor {
   public:
     virtual ~Sensor() = default;
     virtual SensorPoint sample_point(const Vec2& u) const = 0;
+    // Its inverse: `unused` where it reads no numbers.
+    virtual Vec2 invert_point(const SensorPoint& e, const Vec2& unused) const = 0;
     virtual SensorRay ray(const SensorPoint& e, const Vec2& raster) const = 0;
     // Empty if `x` is behind the sensor, nearer than the near plane or farther than the far plane. The raster position
     // may lie outside the film.

@@ -42,6 +42,7 @@ struct ShapeSample {
     Vec3 p, ng;
     Vec2 uv;
     float offset = 0, offset_per_length = 0;  // as SurfacePoint's
+    std::uint32_t primitive = 0;
 };
 
 struct InstanceTransform;  // instance.h
@@ -68,6 +69,9 @@ class Shape {
 
     virtual double area() const = 0;
     virtual ShapeSample sample(double u_primitive, const Vec2& u) const = 0;  // pdf 1 / area()
+
+    // The inverse of sample(): numbers that draw the point p of a primitive.
+    virtual EmitterNumbers invert_sample(std::uint32_t primitive, const Vec3& p, const InverseNumbers& v) const = 0;
 
     const bool is_mesh;    // is a MeshShape
     Vec3 origin{0, 0, 0};  // of the scene: fill and sample work in coordinates relative to it

@@ -1,6 +1,8 @@
 // A point on a surface, as all of transport sees it.
 #pragma once
 
+#include <cstdint>
+
 #include "base/frame.h"
 #include "base/vec.h"
 
@@ -20,6 +22,7 @@ struct SurfacePoint {
     // Bounds of a ray query's float error at p, as a distance along ng: of a ray that starts there, and what is to be
     // added for one that ends there, per length.
     float offset = 0, offset_per_length = 0;
+    std::uint32_t primitive = 0;  // of the shape: a triangle
     const Bsdf* bsdf = nullptr;
     const Emitter* emitter = nullptr;  // area emitter of the shape, if any
 };

@@ -151,4 +151,70 @@ testing::AssertionResult power_is_the_integral(const Emitter& emitter) {
     return testing::AssertionFailure() << "power " << expected << ", estimated " << mean << " +- " << error;
 }
 
+namespace {
+
+// An endpoint and a ray from uniform numbers, and what the inverses make of them.
+struct Inverted {
+    EmitterPoint e;
+    EmissionRay ray;
+    std::optional<EmitterNumbers> point;
+    std::optional<Vec2> direction;
+};
+
+Inverted draw_and_invert(const Emitter& emitter, Rng& rng) {
+    Inverted d;
+    const double u_part = rng.uniform();
+    d.e = emitter.sample_point(u_part, uniform2(rng));
+    d.ray = emitter.sample_ray(d.e, uniform2(rng));
+    InverseNumbers v;
+    v.place = rng.uniform();
+    v.direction = uniform2(rng);
+    d.point = emitter.invert_point(d.e, v);
+    d.direction = emitter.invert_ray(d.e, d.ray.o + (0.1 + rng.uniform()) * d.ray.d);
+    return d;
+}
+
+bool in_unit_interval(const Vec2& u) { return u.minCoeff() >= 0 && u.maxCoeff() < 1; }
+
+}  // namespace
+
+testing::AssertionResult inverse_gives_the_sample(const Emitter& emitter) {
+    Rng rng(21);
+    for (int i = 0; i < 5000; ++i) {
+        const Inverted d = draw_and_invert(emitter, rng);
+        if (!d.point || !d.direction)
+            return testing::AssertionFailure() << "no inverse of " << (d.point ? "the ray" : "the endpoint");
+        if (!in_unit_interval(d.point->point) || !in_unit_interval({d.point->part, 0}) ||
+            !in_unit_interval(*d.direction))
+            return testing::AssertionFailure() << "numbers outside [0, 1)";
+        const EmitterPoint e = emitter.sample_point(d.point->part, d.point->point);
+        const double size = 1 + d.e.p.norm();
+        if (!((e.p - d.e.p).norm() <= 1e-9 * size && std::abs(e.pdf - d.e.pdf) <= 1e-6 * d.e.pdf + 1e-12))
+            return testing::AssertionFailure() << "endpoint " << d.e.p.transpose() << " of density " << d.e.pdf
+                                               << " comes back as " << e.p.transpose() << ", " << e.pdf;
+        const EmissionRay ray = emitter.sample_ray(d.e, *d.direction);
+        if (!((ray.o - d.ray.o).norm() <= 1e-9 * size && (ray.d - d.ray.d).norm() <= 1e-9))
+            return testing::AssertionFailure()
+                   << "ray " << d.ray.d.transpose() << " comes back as " << ray.d.transpose();
+    }
+    return testing::AssertionSuccess();
+}
+
+testing::AssertionResult inverse_numbers_are_uniform(const Emitter& emitter) {
+    constexpr int draws = 20000, side = 5;
+    const auto cell = [](double u) { return static_cast<std::size_t>(u * side); };
+    std::vector<double> points(side * side * side), rays(side * side);
+    Rng rng(22);
+    for (int i = 0; i < draws; ++i) {
+        const Inverted d = draw_and_invert(emitter, rng);
+        if (!d.point || !d.direction) return testing::AssertionFailure() << "no inverse";
+        ++points[(cell(d.point->part) * side + cell(d.point->point.x())) * side + cell(d.point->point.y())];
+        ++rays[cell(d.direction->x()) * side + cell(d.direction->y())];
+    }
+    const auto expected = [&](std::size_t cells) { return std::vector<double>(cells, double(draws) / double(cells)); };
+    if (auto result = follows(expected(points.size()), points); !result) return result << " of the endpoint's numbers";
+    if (auto result = follows(expected(rays.size()), rays); !result) return result << " of the ray's numbers";
+    return testing::AssertionSuccess();
+}
+
 }  // namespace keyhole

@@ -26,6 +26,10 @@ class Rectangle final : public Shape {
         const double x = (u.x() + (u_part < 0.5 ? 0 : 1)) / 2;
         return {{3 * x, 2 * u.y(), 1}, {0, 0, -1}, {x, u.y()}, 0.125f};
     }
+    EmitterNumbers invert_sample(std::uint32_t, const Vec3& p, const InverseNumbers& v) const override {
+        const double x = p.x() / 3, half = x < 0.5 ? 0 : 0.5;
+        return {number_in_interval(v.place, half, half + 0.5), {2 * (x - half), p.y() / 2}};
+    }
 };
 const Rectangle rectangle;
 
@@ -56,6 +60,8 @@ class EmitterTest : public testing::TestWithParam<std::unique_ptr<Emitter> (*)()
 TEST_P(EmitterTest, SamplesCarryTheirDensities) { EXPECT_TRUE(samples_carry_their_densities(*emitter)); }
 TEST_P(EmitterTest, SurvivesTheEndsOfTheUnitInterval) { EXPECT_TRUE(survives_the_ends_of_the_unit_interval(*emitter)); }
 TEST_P(EmitterTest, RaysFollowTheirDensity) { EXPECT_TRUE(rays_follow_their_density(*emitter, center, radius)); }
+TEST_P(EmitterTest, InverseGivesTheSample) { EXPECT_TRUE(inverse_gives_the_sample(*emitter)); }
+TEST_P(EmitterTest, InverseNumbersAreUniform) { EXPECT_TRUE(inverse_numbers_are_uniform(*emitter)); }
 TEST_P(EmitterTest, PowerIsTheIntegralOfWhatIsEmitted) { EXPECT_TRUE(power_is_the_integral(*emitter)); }
 
 INSTANTIATE_TEST_SUITE_P(All, EmitterTest,

@@ -101,6 +101,8 @@ TEST_P(EnvmapTest, SurvivesTheEndsOfTheUnitInterval) {
     EXPECT_TRUE(survives_the_ends_of_the_unit_interval(*emitter));
 }
 TEST_P(EnvmapTest, RaysFollowTheirDensity) { EXPECT_TRUE(rays_follow_their_density(*emitter, {1, 2, 3}, 2)); }
+TEST_P(EnvmapTest, InverseGivesTheSample) { EXPECT_TRUE(inverse_gives_the_sample(*emitter)); }
+TEST_P(EnvmapTest, InverseNumbersAreUniform) { EXPECT_TRUE(inverse_numbers_are_uniform(*emitter)); }
 TEST_P(EnvmapTest, PowerIsTheIntegralOfWhatIsEmitted) { EXPECT_TRUE(power_is_the_integral(*emitter)); }
 
 TEST_P(EnvmapTest, InterpolatesBetweenTexelCentres) {

@@ -62,6 +62,14 @@ class SensorTest : public testing::TestWithParam<std::unique_ptr<Sensor> (*)()> 
     Vec2 raster() { return uniform2().cwiseProduct(Vec2(800, 500)) - Vec2(80, 70); }
 };
 
+TEST_P(SensorTest, InvertsItsPoint) {
+    for (int i = 0; i < 2000; ++i) {
+        const Vec2 u = uniform2(), unused = uniform2();
+        const Vec2 inverse = sensor->invert_point(sensor->sample_point(u), unused);
+        EXPECT_LE((inverse - (sensor->traits().aperture ? u : unused)).norm(), 1e-12);
+    }
+}
+
 TEST_P(SensorTest, ViewInvertsRay) {
     for (int i = 0; i < 2000; ++i) {
         const SensorPoint e = point();

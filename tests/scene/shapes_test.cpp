@@ -198,6 +198,24 @@ TEST_P(Shapes, SamplesLieOnTheSurfaceWithItsNormal) {
     }
 }
 
+// The maps are one to one but for where the primitive's number lies in its interval.
+TEST_P(Shapes, InvertedSamplesGiveTheirNumbers) {
+    const auto scene = build(false, true);
+    const Emitter& emitter = *scene->emitters()[0];
+    Rng rng(6, 1);
+    for (int i = 0; i < 2000; ++i) {
+        const double part = rng.uniform();
+        const Vec2 u = uniform2(rng);
+        const EmitterPoint e = emitter.sample_point(part, u);
+        InverseNumbers v;
+        v.place = rng.uniform();
+        const auto n = emitter.invert_point(e, v);
+        ASSERT_TRUE(n);
+        ASSERT_LE((n->point - u).norm(), 1e-7) << u.transpose();
+        ASSERT_EQ(emitter.sample_point(n->part, n->point).primitive, e.primitive);
+    }
+}
+
 // False alarms: 1e-5 over all shapes.
 TEST_P(Shapes, SamplesAreUniformInArea) {
     const auto scene = build(false, true);

@@ -1,7 +1,6 @@
 // Choosing between lobes with one number.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 
@@ -13,14 +12,8 @@ namespace keyhole {
 // A number of [0, 1) chooses the interval [begin, end) that it falls in, and its position inside the interval serves as
 // the number of the choice that follows. Given the first choice the position is again uniform on [0, 1) and says
 // nothing about it, so a sequence of choices splits [0, 1) into one interval per final lobe, and an inverse draws the
-// number uniformly in that interval.
+// number uniformly in that interval (number_in_interval).
 inline double position_in_interval(double u, double begin, double end) { return clamp01((u - begin) / (end - begin)); }
-
-// Its inverse: the number of [begin, end) at a position of [0, 1).
-inline double number_in_interval(double position, double begin, double end) {
-    const double u = begin + position * (end - begin);
-    return u < end ? u : std::nextafter(end, begin);
-}
 
 // Probability of the first of two lobes of powers a and b >= 0 in proportion to them; NaN if both are 0.
 inline double share(double a, double b) { return a / (a + b); }

@@ -33,13 +33,21 @@ class AreaEmitter final : public Emitter {
 
     EmitterPoint sample_point(double u_part, const Vec2& u) const override {
         const ShapeSample s = shape_.sample(u_part, u);
-        return {s.p + shape_.origin, s.ng, s.uv, pdf_area_, s.offset + origin_rounding_, s.offset_per_length};
+        return {s.p + shape_.origin, s.ng, s.uv, pdf_area_, s.offset + origin_rounding_, s.offset_per_length, s.primitive};
+    }
+    std::optional<EmitterNumbers> invert_point(const EmitterPoint& e, const InverseNumbers& v) const override {
+        return shape_.invert_sample(e.primitive, e.p - shape_.origin, v);
     }
     double pdf_point(const EmitterPoint&) const override { return pdf_area_; }
 
     EmissionRay sample_ray(const EmitterPoint& e, const Vec2& u) const override {
         const Vec3 w = square_to_cosine_hemisphere(u);
         return {e.p, Frame::from_normal(e.ng).to_world(w), square_to_cosine_hemisphere_pdf(w)};
+    }
+    std::optional<Vec2> invert_ray(const EmitterPoint& e, const Vec3& x) const override {
+        const Vec3 w = Frame::from_normal(e.ng).to_local((x - e.p).normalized());
+        if (!(w.z() > 0)) return std::nullopt;
+        return cosine_hemisphere_to_square(w);
     }
     double pdf_ray(const EmitterPoint& e, const Vec3& w) const override {
         const double cosine = e.ng.dot(w);

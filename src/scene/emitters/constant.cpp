@@ -12,6 +12,9 @@ class ConstantEmitter final : public InfiniteEmitter {
     EmitterPoint sample_point(double, const Vec2& u) const override {
         return {square_to_sphere(u), Vec3::Zero(), {0, 0}, square_to_sphere_pdf()};
     }
+    std::optional<EmitterNumbers> invert_point(const EmitterPoint& e, const InverseNumbers& v) const override {
+        return EmitterNumbers{v.place, sphere_to_square(e.p)};
+    }
     double pdf_point(const EmitterPoint&) const override { return square_to_sphere_pdf(); }
     Spectrum emitted(const EmitterPoint&, const Vec3&) const override { return radiance_; }
     Spectrum radiance(const EmitterPoint&, const Vec3&) const override { return radiance_; }

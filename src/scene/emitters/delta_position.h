@@ -10,6 +10,9 @@ class DeltaPositionEmitter : public Emitter {
     explicit DeltaPositionEmitter(const Vec3& position) : position_(position) { traits_.delta = true; }
 
     EmitterPoint sample_point(double, const Vec2&) const final { return {position_, Vec3::Zero(), {0, 0}, 1}; }
+    std::optional<EmitterNumbers> invert_point(const EmitterPoint&, const InverseNumbers& v) const final {
+        return EmitterNumbers{v.place, v.direction};
+    }
     double pdf_point(const EmitterPoint&) const final { return 0; }
     Spectrum radiance(const EmitterPoint&, const Vec3&) const final { return Spectrum::Zero(); }
 

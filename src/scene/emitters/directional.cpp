@@ -14,6 +14,9 @@ class DirectionalEmitter final : public InfiniteEmitter {
     }
 
     EmitterPoint sample_point(double, const Vec2&) const override { return {towards_, Vec3::Zero(), {0, 0}, 1}; }
+    std::optional<EmitterNumbers> invert_point(const EmitterPoint&, const InverseNumbers& v) const override {
+        return EmitterNumbers{v.place, v.direction};
+    }
     double pdf_point(const EmitterPoint&) const override { return 0; }
     Spectrum emitted(const EmitterPoint&, const Vec3&) const override { return irradiance_; }
     Spectrum radiance(const EmitterPoint&, const Vec3&) const override { return Spectrum::Zero(); }

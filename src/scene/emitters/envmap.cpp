@@ -45,12 +45,18 @@ class Envmap final : public InfiniteEmitter {
         const Vec3 d(sine * std::sin(phi), cosine, -sine * std::cos(phi));
         return {to_world_ * d, Vec3::Zero(), {0, 0}, density(row, column, place)};
     }
+    std::optional<EmitterNumbers> invert_point(const EmitterPoint& e, const InverseNumbers& v) const override {
+        const Vec3 d = to_world_.transpose() * e.p;
+        const Cell c = cell(d);
+        const std::size_t index = static_cast<std::size_t>(c.row) * width_ + c.column;
+        if (!(distribution_[index + 1] > distribution_[index])) return std::nullopt;
+        return EmitterNumbers{number_in_interval(v.place, distribution_[index], distribution_[index + 1]),
+                              bilinear_to_square(place(c, d), luminances(c.row, c.column))};
+    }
     double pdf_point(const EmitterPoint& e) const override {
         const Vec3 d = to_world_.transpose() * e.p;
         const Cell c = cell(d);
-        const double y = (cosines_[c.row] - d.y()) / (cosines_[c.row] - cosines_[c.row + 1]);
-        // The row was found by the angle: rounding may leave the cosine just outside it.
-        return density(c.row, c.column, {c.x, std::clamp(y, 0.0, 1.0)});
+        return density(c.row, c.column, place(c, d));
     }
 
     Spectrum emitted(const EmitterPoint& e, const Vec3&) const override { return lookup(e.p); }
@@ -74,6 +80,13 @@ class Envmap final : public InfiniteEmitter {
         const int column = x > 0 ? std::min(static_cast<int>(x), width_ - 1) : 0;
         const int row = y > 0 ? std::min(static_cast<int>(y), height_) : 0;
         return {row, column, x - column, y - row};
+    }
+
+    // The place of a direction in its cell, linear in the cosine.
+    Vec2 place(const Cell& c, const Vec3& d) const {
+        const double y = (cosines_[c.row] - d.y()) / (cosines_[c.row] - cosines_[c.row + 1]);
+        // The row was found by the angle: rounding may leave the cosine just outside it.
+        return {c.x, std::clamp(y, 0.0, 1.0)};
     }
 
     // Polar angle of the upper edge of a row of cells.

@@ -17,6 +17,11 @@ class InfiniteEmitter : public Emitter {
         const Vec3 o = Frame::from_normal(e.p).to_world({q.x(), q.y(), 1.1});
         return {center_ + radius_ * o, -e.p, 1 / disk_area()};
     }
+    std::optional<Vec2> invert_ray(const EmitterPoint& e, const Vec3& x) const final {
+        const Vec3 q = Frame::from_normal(e.p).to_local(x - center_) / radius_;
+        if (!(q.head<2>().squaredNorm() <= 1 + 1e-12)) return std::nullopt;  // 1, after rounding
+        return disk_to_square(q.head<2>());
+    }
     double pdf_ray(const EmitterPoint&, const Vec3&) const final { return 1 / disk_area(); }
 
     // A scene without extent counts as a unit sphere.

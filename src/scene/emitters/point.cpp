@@ -14,6 +14,9 @@ class PointEmitter final : public DeltaPositionEmitter {
     EmissionRay sample_ray(const EmitterPoint& e, const Vec2& u) const override {
         return {e.p, square_to_sphere(u), square_to_sphere_pdf()};
     }
+    std::optional<Vec2> invert_ray(const EmitterPoint& e, const Vec3& x) const override {
+        return sphere_to_square((x - e.p).normalized());
+    }
     double pdf_ray(const EmitterPoint&, const Vec3&) const override { return square_to_sphere_pdf(); }
     Spectrum emitted(const EmitterPoint&, const Vec3&) const override { return intensity_; }
     Spectrum power() const override { return 4 * pi * intensity_; }

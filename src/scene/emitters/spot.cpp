@@ -25,6 +25,11 @@ class SpotEmitter final : public DeltaPositionEmitter {
     EmissionRay sample_ray(const EmitterPoint& e, const Vec2& u) const override {
         return {e.p, frame_.to_world(square_to_cone(u, cos_cutoff_)), square_to_cone_pdf(cos_cutoff_)};
     }
+    std::optional<Vec2> invert_ray(const EmitterPoint& e, const Vec3& x) const override {
+        const Vec3 w = (x - e.p).normalized();
+        if (!(pdf_ray(e, w) > 0)) return std::nullopt;
+        return cone_to_square(frame_.to_local(w), cos_cutoff_);
+    }
     double pdf_ray(const EmitterPoint&, const Vec3& w) const override {
         // Rounding may put a sampled direction just outside the cone.
         return frame_.n.dot(w) < cos_cutoff_ - 1e-15 ? 0 : square_to_cone_pdf(cos_cutoff_);

@@ -29,6 +29,7 @@ class Orthographic final : public Sensor {
     }
 
     SensorPoint sample_point(const Vec2&) const override { return {-direction_, 1}; }
+    Vec2 invert_point(const SensorPoint&, const Vec2& unused) const override { return unused; }
     SensorRay ray(const SensorPoint&, const Vec2& raster) const override {
         const Vec3 local((half_width_ - raster.x()) / half_width_, (half_height_ - raster.y()) / half_width_,
                          near_clip_);

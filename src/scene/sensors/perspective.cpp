@@ -9,6 +9,7 @@ class Perspective final : public Sensor {
     explicit Perspective(const PerspectiveParams& params) : projection_(params) {}
 
     SensorPoint sample_point(const Vec2&) const override { return {projection_.origin(), 1}; }
+    Vec2 invert_point(const SensorPoint&, const Vec2& unused) const override { return unused; }
     SensorRay ray(const SensorPoint& e, const Vec2& raster) const override {
         return projection_.ray(e.p, {0, 0}, raster);
     }

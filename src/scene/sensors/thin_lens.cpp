@@ -23,6 +23,9 @@ class ThinLens final : public Sensor {
         const Vec2 a = radius_ * square_to_disk(u);
         return {projection_.origin() + projection_.to_world({a.x(), a.y(), 0}), pdf_};
     }
+    Vec2 invert_point(const SensorPoint& e, const Vec2&) const override {
+        return disk_to_square(projection_.to_camera(e.p - projection_.origin()).head<2>() / radius_);
+    }
     SensorRay ray(const SensorPoint& e, const Vec2& raster) const override {
         return projection_.ray(e.p, shift(e), raster);
     }

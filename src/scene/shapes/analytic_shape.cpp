@@ -86,6 +86,10 @@ ShapeSample AnalyticShape::sample(double /*u_primitive*/, const Vec2& u) const {
     return s;
 }
 
+EmitterNumbers AnalyticShape::invert_sample(std::uint32_t /*primitive*/, const Vec3& p, const InverseNumbers& v) const {
+    return {v.place, invert_local(project(to_local_ * p).p)};
+}
+
 std::pair<Vec3, Vec3> AnalyticShape::bounds() const {
     const auto [lower, upper] = local_bounds();
     const Vec3 center = to_world_ * Vec3((lower + upper) / 2);

@@ -15,6 +15,7 @@ class AnalyticShape : public Shape {
     double nearest(const Vec3& o, const Vec3& d, double tnear, double tfar) const;
     double fill(const Ray& ray, const ShapeHit& hit, SurfacePoint& x) const override;
     ShapeSample sample(double u_primitive, const Vec2& u) const override;
+    EmitterNumbers invert_sample(std::uint32_t primitive, const Vec3& p, const InverseNumbers& v) const override;
     double area() const override { return area_; }
 
     // Moves the shape by a vector, before it is used.
@@ -44,6 +45,7 @@ class AnalyticShape : public Shape {
     virtual Point project(const Vec3& p) const = 0;          // the surface point nearest to p
     virtual Parameters parameters(const Vec3& p) const = 0;  // p on the surface
     virtual Vec3 sample_local(const Vec2& u) const = 0;      // uniform in area under the transforms allowed
+    virtual Vec2 invert_local(const Vec3& p) const = 0;      // its inverse
     virtual std::pair<Vec3, Vec3> local_bounds() const = 0;
 
     // Solutions of a t^2 - 2 b t + c = 0 given its discriminant b^2 - a c, without cancellation.

@@ -45,4 +45,6 @@ AnalyticShape::Parameters Cylinder::parameters(const Vec3& p) const {
 
 Vec3 Cylinder::sample_local(const Vec2& u) const { return {std::cos(2 * pi * u.x()), std::sin(2 * pi * u.x()), u.y()}; }
 
+Vec2 Cylinder::invert_local(const Vec3& p) const { return {azimuth_to_unit(p.x(), p.y()), clamp01(p.z())}; }
+
 }  // namespace keyhole

@@ -30,4 +30,6 @@ Vec3 Disk::sample_local(const Vec2& u) const {
     return {p.x(), p.y(), 0};
 }
 
+Vec2 Disk::invert_local(const Vec3& p) const { return disk_to_square(p.head<2>()); }
+
 }  // namespace keyhole

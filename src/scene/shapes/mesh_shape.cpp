@@ -129,6 +129,7 @@ double MeshShape::fill_through_instance(const Ray& ray, const ShapeHit& hit, Sur
     const double t = plane.meet(ray, hit.t);
     x.p = plane.put_back(ray.o + t * ray.d);
     x.ng = n;
+    x.primitive = hit.primitive;
     set_instance_offset(hit.primitive, *hit.instance, x);
     set_frame(hit, x);
     return t;
@@ -234,11 +235,18 @@ ShapeSample MeshShape::sample(double u_primitive, const Vec2& u) const {
     const Plane& plane = planes_[primitive];
     const Vec2 b = square_to_triangle(u);
     ShapeSample s{f.v0 + b.x() * f.e1 + b.y() * f.e2, plane.n, needs_uv ? uv(primitive, b) : Vec2(0, 0)};
+    s.primitive = primitive;
     plane.set_offset(s.p, s);
     Vec3 n;
     const bool smooth = !normals_.empty() && shading_normal(primitive, nullptr, b, n);
     if (smooth ? n.dot(s.ng) < 0 : flip_normals) s.ng = -s.ng;
     return s;
+}
+
+EmitterNumbers MeshShape::invert_sample(std::uint32_t primitive, const Vec3& p, const InverseNumbers& v) const {
+    const double begin = primitive > 0 ? area_cdf_[primitive - 1] : 0, end = area_cdf_[primitive];
+    const Vec2 b = triangle(primitive, nullptr).barycentrics(p, planes_[primitive].n);
+    return {number_in_interval(v.place, begin / area_, end / area_), triangle_to_square(b)};
 }
 
 std::size_t Mesh::bytes() const {

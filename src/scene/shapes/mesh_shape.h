@@ -29,6 +29,7 @@ class MeshShape final : public Shape {
         x.p = plane.put_back(ray.o + t * ray.d);
         plane.set_offset(x.p, x);
         x.ng = plane.n;
+        x.primitive = hit.primitive;
         if (flat())
             set_flat_frame(x);
         else
@@ -40,6 +41,8 @@ class MeshShape final : public Shape {
     void prepare_sampling();
     double area() const override { return area_; }
     ShapeSample sample(double u_primitive, const Vec2& u) const override;
+
+    EmitterNumbers invert_sample(std::uint32_t primitive, const Vec3& p, const InverseNumbers& v) const override;
 
     std::span<const Vec3f> positions() const { return positions_; }
     std::span<const std::array<std::uint32_t, 3>> triangles() const { return triangles_; }

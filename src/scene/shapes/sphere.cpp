@@ -41,4 +41,6 @@ AnalyticShape::Parameters Sphere::parameters(const Vec3& p) const {
 
 Vec3 Sphere::sample_local(const Vec2& u) const { return square_to_sphere(u); }
 
+Vec2 Sphere::invert_local(const Vec3& p) const { return sphere_to_square(p); }
+
 }  // namespace keyhole

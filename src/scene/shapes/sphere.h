@@ -16,6 +16,7 @@ class Sphere final : public AnalyticShape {
     Point project(const Vec3& p) const override;
     Parameters parameters(const Vec3& p) const override;
     Vec3 sample_local(const Vec2& u) const override;
+    Vec2 invert_local(const Vec3& p) const override;
     std::pair<Vec3, Vec3> local_bounds() const override { return {{-1, -1, -1}, {1, 1, 1}}; }
 };
 
