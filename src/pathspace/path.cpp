@@ -101,15 +101,15 @@ PathDensities densities(const Scene& scene, const RasterWindow& window, const Pa
     return p;
 }
 
-bool technique_exists(const Path& path, int t) {
-    const int k = path.length();
+bool technique_exists(std::span<const Vertex> x, int t) {
+    const int k = static_cast<int>(x.size()) - 1;
     if (t < 1 || t > k + 1) return false;
     if (k == 1) return t == 2;
     if (t == k + 1) {
-        const EmitterTraits& emitter = path.x[k].x.emitter->traits();
+        const EmitterTraits& emitter = x.back().x.emitter->traits();
         return emitter.surface || emitter.environment;
     }
-    return !path.x[t - 1].delta && !path.x[t].delta;
+    return !x[t - 1].delta && !x[t].delta;
 }
 
 }  // namespace keyhole

@@ -33,6 +33,6 @@ PathDensities densities(const Scene& scene, const RasterWindow& window, const Pa
 
 // Whether technique t (vertices from the eye) can make the path: k = 1 only by t = 2; a connection's ends must scatter
 // by smooth lobes; t = k + 1 needs an emitter that rays can hit.
-bool technique_exists(const Path& path, int t);
+bool technique_exists(std::span<const Vertex> x, int t);
 
 }  // namespace keyhole

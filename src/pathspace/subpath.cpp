@@ -130,6 +130,7 @@ Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& nex
     double pdf = s->pdf, pdf_reverse = s->pdf_reverse;
     v.delta = s->delta;
     if (s->delta) {
+        v.lobe = s->lobe;
         const double eta2_next = mode == Mode::eye ? s->eta * s->eta : 1;
         const double eta2_prev = mode == Mode::eye ? 1 : 1 / (s->eta * s->eta);
         v.delta_f = s->weight * (s->pdf * eta2_next);

@@ -14,6 +14,10 @@ struct RasterWindow {
     explicit RasterWindow(const FilmSettings& film);
     double area() const { return size.x() * size.y(); }
     Vec2 at(const Vec2& u) const { return origin + size.cwiseProduct(u); }
+    Vec2 to_unit(const Vec2& r) const {
+        const Vec2 u = (r - origin).cwiseQuotient(size);
+        return {clamp01(u.x()), clamp01(u.y())};
+    }
     bool contains(const Vec2& r) const {
         const double x = r.x() - origin.x(), y = r.y() - origin.y();
         return x >= 0 && y >= 0 && x < size.x() && y < size.y();

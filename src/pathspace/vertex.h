@@ -30,6 +30,7 @@ struct Vertex {
     double delta_pdf_eye = 0, delta_pdf_light = 0;  // densities of both directions in the sense above
     bool infinite = false;                          // x.p is a unit direction away from the scene
     bool delta = false;                             // scatters by a delta lobe: cannot be connected
+    std::uint8_t lobe = 0;                          // delta events only: BsdfSample::lobe
 };
 
 inline EmitterPoint emitter_point(const Vertex& v) {

@@ -62,7 +62,8 @@ Evaluation Chart::evaluate(const PrimarySample& u) {
     result.failure = connect(tracer_, window_, sensor_point_, eye(), light(), connection_);
     if (result.failure != PathFailure::none) return result;
     result.raster = t_ == 1 ? connection_.raster : raster_;
-    result.contribution = connection_.throughput * mis_weight(eye(), light(), connection_.junction, Techniques::all);
+    result.weight = mis_weight(eye(), light(), connection_.junction, Techniques::all);
+    result.contribution = connection_.throughput * result.weight;
     if (std::isfinite(result.contribution.sum()))
         result.target = scalar(target_, result.contribution);
     else

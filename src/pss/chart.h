@@ -27,6 +27,7 @@ struct Evaluation {
     Spectrum contribution{0, 0, 0};  // w_t f / p_t
     double target = 0;               // f* of it, which is C(x); 0 after a failure
     Vec2 raster{0, 0};
+    double weight = 0;  // w_t
 };
 
 // Maps coordinates to paths. Owns the vertices, so one per thread.

@@ -54,7 +54,31 @@ class CoordinateLayout {
     Block eye_block(const double* u, int i) const { return block(u + lens_ + 2 + (i - 1) * block_); }
     Block light_block(const double* u, int i) const { return block(u + choice_ + 5 + (i - 1) * block_); }
 
+    // Writers, for inverses; absent coordinates are left out.
+    void set_lens(double* u, const Vec2& v) const {
+        if (lens_) set(u, v);
+    }
+    void set_raster(double* u, const Vec2& v) const { set(u + lens_, v); }
+    void set_emitter(double* u, double v) const {
+        if (choice_) u[0] = v;
+    }
+    void set_point(double* u, double part, const Vec2& v) const {
+        u[choice_] = part;
+        set(u + choice_ + 1, v);
+    }
+    void set_ray(double* u, const Vec2& v) const { set(u + choice_ + 3, v); }
+    double* eye_block_at(double* u, int i) const { return u + lens_ + 2 + (i - 1) * block_; }
+    double* light_block_at(double* u, int i) const { return u + choice_ + 5 + (i - 1) * block_; }
+    void set_block(double* block, const Block& v) const {
+        set(block, v.direction);
+        if (block_ == 3) block[2] = v.lobe;
+    }
+
   private:
+    static void set(double* u, const Vec2& v) {
+        u[0] = v.x();
+        u[1] = v.y();
+    }
     Block block(const double* u) const { return {block_ == 3 ? u[2] : 0.0, {u[0], u[1]}}; }
 
     int lens_, choice_, block_, max_length_;

@@ -18,7 +18,7 @@ struct EmitterPoint {
     Vec2 uv{0, 0};
     double pdf = 0;  // density given the emitter: area; at infinity: solid angle; 1 where `delta`
     float offset = 0, offset_per_length = 0;  // area emitters: as SurfacePoint's
-    std::uint32_t primitive = 0;  // area emitters: of the shape
+    std::uint32_t primitive = 0;              // area emitters: of the shape
 };
 
 // The numbers that Emitter::sample_point reads.

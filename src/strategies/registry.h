@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "strategies/mmlt.h"
+#include "strategies/chart_swap.h"
 #include "strategies/parameter.h"
 
 namespace keyhole {

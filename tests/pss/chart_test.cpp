@@ -53,8 +53,8 @@ TEST_P(Charts, ContributionAndWeightsDoNotDependOnTheTechnique) {
         *scene, 60000, [&](const PrimarySample& u, const Path& path, const PathDensities& d, const Evaluation& e) {
             double sum = 0;
             for (int t = 1; t <= u.k + 1; ++t)
-                if (technique_exists(path, t)) sum += path_density(d, t);
-            ASSERT_TRUE(technique_exists(path, u.t));
+                if (technique_exists(path.x, t)) sum += path_density(d, t);
+            ASSERT_TRUE(technique_exists(path.x, u.t));
             const Spectrum expected = contribution(*scene, path) / sum;
             for (int c = 0; c < 3; ++c)
                 ASSERT_NEAR(e.contribution[c], expected[c], tolerance * e.contribution.maxCoeff() + negligible)

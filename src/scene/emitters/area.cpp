@@ -33,7 +33,8 @@ class AreaEmitter final : public Emitter {
 
     EmitterPoint sample_point(double u_part, const Vec2& u) const override {
         const ShapeSample s = shape_.sample(u_part, u);
-        return {s.p + shape_.origin, s.ng, s.uv, pdf_area_, s.offset + origin_rounding_, s.offset_per_length, s.primitive};
+        return {s.p + shape_.origin, s.ng,       s.uv, pdf_area_, s.offset + origin_rounding_,
+                s.offset_per_length, s.primitive};
     }
     std::optional<EmitterNumbers> invert_point(const EmitterPoint& e, const InverseNumbers& v) const override {
         return shape_.invert_sample(e.primitive, e.p - shape_.origin, v);
