@@ -24,5 +24,6 @@ void add_bench_command(CLI::App& keyhole, Runner& runner);
 void add_mixes_command(CLI::App& keyhole, Runner& runner);
 void add_compare_command(CLI::App& keyhole, Runner& runner);
 void add_sweep_command(CLI::App& keyhole, Runner& runner);
+void add_roundtrip_command(CLI::App& keyhole, Runner& runner);
 
 }  // namespace keyhole

@@ -19,14 +19,21 @@ enum class InverseFailure : std::uint8_t {
     retrace      // the coordinates do not lead back to the path
 };
 
+struct Inversion {
+    InverseFailure failure = InverseFailure::none;
+    int vertex = 0;  // whose sampler failed: 0 for the sensor, k for the emitter
+};
+
 // x: the vertices x_0 ... x_k of a path with light, as sampled by any technique; k >= 2, t in [1, k+1]. Sets u's
 // coordinates for (k, t). Numbers that the chart does not read for this path are drawn fresh.
-InverseFailure invert(const Scene& scene, const RasterWindow& window, const CoordinateLayout& layout,
-                      std::span<const Vertex> x, int t, PrimarySample& u, Rng& rng);
+Inversion invert(const Scene& scene, const RasterWindow& window, const CoordinateLayout& layout,
+                 std::span<const Vertex> x, int t, PrimarySample& u, Rng& rng);
 
-// How far the path that a chart has traced last is from x: the largest distance of a vertex from its counterpart, in
-// units of the width 1 / sqrt(density) of what sampled it, or seen from the vertex before in radians, whichever is
-// more. Infinite where a vertex is not of the same kind.
+// How far vertex i of the path that a chart has traced last is from x_i: in units of the width 1 / sqrt(density) of
+// what sampled it, or seen from the vertex before in radians, whichever is more. Infinite where it is not of the same
+// kind.
+double deviation(const Chart& chart, std::span<const Vertex> x, int i);
+// The largest of all vertices.
 double deviation(const Chart& chart, std::span<const Vertex> x);
 
 // Of paths that count as the same. Rounding is far below, another path far above.

@@ -7,7 +7,7 @@ Proposal ChartSwap::propose(PssState& x, PssState& y, Rng& rng) const {
     const int other = techniques_.sample_other(k, t, rng.uniform());
     const Scene& scene = chart_.tracer().scene();
     const auto find = [&](int technique, PrimarySample& u) {
-        return invert(scene, chart_.window(), chart_.layout(), path_, technique, u, rng) == InverseFailure::none;
+        return invert(scene, chart_.window(), chart_.layout(), path_, technique, u, rng).failure == InverseFailure::none;
     };
 
     const double weight = chart_.evaluate(x.u).weight;

@@ -53,7 +53,7 @@ TEST_P(Inverses, EveryTechniqueGivesThePathBack) {
     for_paths(2000, [&](const PrimarySample& u, const Path& path, const Evaluation& e) {
         if (e.target < 1e-7 * mean_target) return;
         for (int t = 1; t <= u.k + 1; ++t) {
-            const InverseFailure failure = invert(*scene, chart.window(), layout, path.x, t, other, rng);
+            const InverseFailure failure = invert(*scene, chart.window(), layout, path.x, t, other, rng).failure;
             ASSERT_EQ(failure == InverseFailure::impossible, !technique_exists(path.x, t)) << u.k << ", " << t;
             if (failure == InverseFailure::impossible) continue;
             ++tries;
@@ -96,7 +96,7 @@ TEST_P(Inverses, CoordinatesHaveTheDistributionOfTheSamples) {
     for_paths(12000, [&](const PrimarySample& u, const Path& path, const Evaluation&) {
         if (u.k != 3 || (u.t != 2 && u.t != 3)) return;
         if (++paths % 2) return count(drawn, u);
-        if (invert(*scene, chart.window(), layout, path.x, u.t, again, rng) == InverseFailure::none)
+        if (invert(*scene, chart.window(), layout, path.x, u.t, again, rng).failure == InverseFailure::none)
             count(inverted, again);
     });
     for (std::size_t c = 0; c < 20; ++c) {
