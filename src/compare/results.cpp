@@ -120,14 +120,20 @@ json strategies_json(const EntryRuns& entry) {
             sum.proposals += s.proposals;
             sum.accepted += s.accepted;
             sum.mean_acceptance += s.mean_acceptance * static_cast<double>(s.proposals);
+            sum.luminance.effective_sample_size += s.luminance.effective_sample_size;
             for (const auto& [kind, count] : s.failures) sum.failures[kind] += count;
         }
         if (sum.proposals > 0) sum.mean_acceptance /= static_cast<double>(sum.proposals);
-        strategies.push_back({{"name", first[i].name},
-                              {"proposals", sum.proposals},
-                              {"accepted", sum.accepted},
-                              {"mean_acceptance", sum.mean_acceptance},
-                              {"failures", sum.failures}});
+        json j = {{"name", first[i].name},
+                  {"proposals", sum.proposals},
+                  {"accepted", sum.accepted},
+                  {"mean_acceptance", sum.mean_acceptance},
+                  {"failures", sum.failures}};
+        if (const double samples = sum.luminance.effective_sample_size; samples > 0) {
+            j["effective_sample_size"] = samples;
+            j["autocorrelation_time"] = static_cast<double>(sum.proposals) / samples;
+        }
+        strategies.push_back(std::move(j));
     }
     return strategies;
 }

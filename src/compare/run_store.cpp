@@ -15,7 +15,23 @@ namespace keyhole {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyStatistics, name, proposals, accepted, mean_acceptance, failures)
+// What the results need of a strategy.
+void to_json(json& j, const StrategyStatistics& s) {
+    j = {{"name", s.name},
+         {"proposals", s.proposals},
+         {"accepted", s.accepted},
+         {"mean_acceptance", s.mean_acceptance},
+         {"failures", s.failures},
+         {"effective_sample_size", s.luminance.effective_sample_size}};
+}
+void from_json(const json& j, StrategyStatistics& s) {
+    j.at("name").get_to(s.name);
+    j.at("proposals").get_to(s.proposals);
+    j.at("accepted").get_to(s.accepted);
+    j.at("mean_acceptance").get_to(s.mean_acceptance);
+    j.at("failures").get_to(s.failures);
+    j.at("effective_sample_size").get_to(s.luminance.effective_sample_size);
+}
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunPart, part, seconds, cpu_seconds, mutations)
 
 namespace {
