@@ -89,7 +89,9 @@ double deviation(const Chart& chart, std::span<const Vertex> x, int i) {
     // A point on an emitter has its BSDF only where it was hit.
     const bool same =
         i == k ? there.x.emitter == here.x.emitter : there.x.bsdf == here.x.bsdf && there.infinite == here.infinite;
-    if (!same || there.delta != here.delta) return std::numeric_limits<double>::infinity();
+    // On an edge, a ray from elsewhere may hit the other triangle.
+    const bool same_plane = (there.x.ng - here.x.ng).norm() < largest_deviation;
+    if (!same || !same_plane || there.delta != here.delta) return std::numeric_limits<double>::infinity();
     const double distance = (there.x.p - here.x.p).norm(), in_widths = distance * std::sqrt(there.pdf_fwd);
     if (i == 0 || (i == k && i >= t)) return in_widths;  // the subpath's start
     const Vertex& prev = i < t ? chart.eye()[i - 1] : chart.light()[k - i - 1];

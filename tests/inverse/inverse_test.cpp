@@ -68,7 +68,9 @@ TEST_P(Inverses, EveryTechniqueGivesThePathBack) {
                 continue;
             }
             worst = std::max(worst, off);
-            ASSERT_NEAR(again.target, e.target, 1e-4 * e.target) << "k " << u.k << ", t " << u.t << " to " << t;
+            // As far as the path itself is off.
+            ASSERT_NEAR(again.target, e.target, (1e-6 + 100 * off) * e.target)
+                << "k " << u.k << ", t " << u.t << " to " << t;
         }
     });
     int failed = 0;

@@ -68,7 +68,7 @@ testing::AssertionResult survives_extremes(const BsdfCase& c);
 testing::AssertionResult inverse_gives_the_sample(const BsdfCase& c);
 
 // Uniform numbers that give a sample, and numbers from `invert` of such samples, have one distribution: chi-square of two
-// samples over the cube of the three numbers, at bsdf_test_level.
+// samples over the cube of the three numbers, at bsdf_test_level. Seen red with lobes drawn by their probabilities alone.
 testing::AssertionResult inverse_numbers_are_uniform(const BsdfCase& c);
 
 // The lobe number chooses the lobe and nothing else; without `chooses_lobe` it has no effect at all.
