@@ -9,15 +9,6 @@
 namespace keyhole {
 namespace {
 
-InverseNumbers fresh(Rng& rng) {
-    InverseNumbers v;
-    v.branch = rng.uniform();
-    v.place = rng.uniform();
-    v.direction.x() = rng.uniform();
-    v.direction.y() = rng.uniform();
-    return v;
-}
-
 // Unit direction from a surface vertex to any other.
 Vec3 direction(const Vertex& from, const Vertex& to) {
     return to.infinite ? to.x.p : Vec3((to.x.p - from.x.p).normalized());
@@ -27,7 +18,7 @@ Vec3 direction(const Vertex& from, const Vertex& to) {
 bool invert_vertex(const CoordinateLayout& layout, const Vertex& prev, const Vertex& v, const Vertex& next, Mode mode,
                    double* block, Rng& rng) {
     const Vec3 known = v.x.frame.to_local(direction(v, prev)), w = v.x.frame.to_local(direction(v, next));
-    const auto n = v.x.bsdf->invert(v.x, known, w, {v.delta, v.lobe}, fresh(rng), mode);
+    const auto n = v.x.bsdf->invert(v.x, known, w, {v.delta, v.lobe}, fresh_numbers(rng), mode);
     if (!n) return false;
     layout.set_block(block, {n->lobe, n->direction});
     return true;
@@ -36,7 +27,7 @@ bool invert_vertex(const CoordinateLayout& layout, const Vertex& prev, const Ver
 Inversion invert_eye(const Scene& scene, const RasterWindow& window, const CoordinateLayout& layout,
                      std::span<const Vertex> x, int t, double* u, Rng& rng) {
     const SensorPoint e{x[0].x.p, x[0].pdf_fwd};
-    const InverseNumbers v = fresh(rng);
+    const InverseNumbers v = fresh_numbers(rng);
     layout.set_lens(u, scene.sensor().invert_point(e, v.direction));
     if (t == 1) return {};
     const auto view = scene.sensor().view(e, x[1].x.p);
@@ -54,7 +45,7 @@ Inversion invert_light(const Scene& scene, const CoordinateLayout& layout, std::
     if (s == 0) return {};
     const Emitter& emitter = *x[k].x.emitter;
     const EmitterPoint e = emitter_point(x[k]);
-    const InverseNumbers v = fresh(rng);
+    const InverseNumbers v = fresh_numbers(rng);
     const auto n = emitter.invert_point(e, v);
     if (!n) return {InverseFailure::emitter, k};
     layout.set_emitter(u, scene.invert_choice(emitter, v.branch));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/rng.h"
 #include "base/vec.h"
 
 namespace keyhole {
@@ -14,6 +15,15 @@ struct InverseNumbers {
     double place = 0;      // where in its interval a number lies that made a discrete choice
     Vec2 direction{0, 0};  // in place of continuous numbers that are not read
 };
+
+inline InverseNumbers fresh_numbers(Rng& rng) {
+    InverseNumbers v;
+    v.branch = rng.uniform();
+    v.place = rng.uniform();
+    v.direction.x() = rng.uniform();
+    v.direction.y() = rng.uniform();
+    return v;
+}
 
 // The number of [begin, end) at a position of [0, 1); the interval is not empty.
 inline double number_in_interval(double position, double begin, double end) {

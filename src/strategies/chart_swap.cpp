@@ -7,7 +7,8 @@ Proposal ChartSwap::propose(PssState& x, PssState& y, Rng& rng) const {
     const int other = techniques_.sample_other(k, t, rng.uniform());
     const Scene& scene = chart_.tracer().scene();
     const auto find = [&](int technique, PrimarySample& u) {
-        return invert(scene, chart_.window(), chart_.layout(), path_, technique, u, rng).failure == InverseFailure::none;
+        return invert(scene, chart_.window(), chart_.layout(), path_, technique, u, rng).failure ==
+               InverseFailure::none;
     };
 
     const double weight = chart_.evaluate(x.u).weight;
@@ -18,9 +19,7 @@ Proposal ChartSwap::propose(PssState& x, PssState& y, Rng& rng) const {
     if (e.failure != PathFailure::none || !(deviation(chart_, path_) < largest_deviation))
         return Proposal::failed(Failure::inverse_failed);
     y.set(e);
-    const double q = techniques_.probability_given_length(k, t);
-    const double q_other = techniques_.probability_given_length(k, other);
-    return {y.target / x.target * (e.weight / weight) * (q * (1 - q)) / (q_other * (1 - q_other)), Failure::none};
+    return {y.target / x.target * (e.weight / weight) * ratio_of_choices(k, t, other), Failure::none};
 }
 
 }  // namespace keyhole

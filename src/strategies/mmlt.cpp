@@ -80,8 +80,7 @@ Proposal TechniqueChange::propose(PssState& x, PssState& y, Rng& rng) const {
     keep_or_draw(x.u.data(), eye_old, y.u.data(), eye_new, rng);
     keep_or_draw(x.u.data() + eye_old, layout.light_count(x.u.s()),  //
                  y.u.data() + eye_new, layout.light_count(y.u.s()), rng);
-    const double q = techniques_.probability_given_length(k, t), q_new = techniques_.probability_given_length(k, y.u.t);
-    return evaluate(chart_, x, y, q * (1 - q) / (q_new * (1 - q_new)));
+    return evaluate(chart_, x, y, ratio_of_choices(k, t, y.u.t));
 }
 
 template class SmallStep<KelemenKernel>;

@@ -54,20 +54,33 @@ class SmallStep final : public PssStrategy {
     Kernel kernel_;
 };
 
-// Same k and same u, another technique t' != t in proportion to q(t' | k): a different path. Coordinates that the chart
-// t' reads and t does not are drawn fresh, and their densities (one) cancel against those forgotten on the way back:
-//     r = [C(y) q(t | k) / (1 - q(t' | k))] / [C(x) q(t' | k) / (1 - q(t | k))].
-class TechniqueChange final : public PssStrategy {
+// What moves to another technique t' != t of the same length have in common: t' is drawn in proportion to q(t' | k).
+class ToOtherTechnique : public PssStrategy {
   public:
-    TechniqueChange(Chart& chart, const TechniqueDistribution& techniques) : chart_(chart), techniques_(techniques) {}
-    std::string_view name() const override { return "technique-change"; }
-    double suitability(const PssState& x) const override { return techniques_.has_choice(x.u.k) ? 1 : 0; }
-    bool suitability_varies() const override { return techniques_.techniques().front().k == 1; }
-    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
+    ToOtherTechnique(Chart& chart, const TechniqueDistribution& techniques) : chart_(chart), techniques_(techniques) {}
+    double suitability(const PssState& x) const final { return techniques_.has_choice(x.u.k) ? 1 : 0; }
+    bool suitability_varies() const final { return techniques_.techniques().front().k == 1; }
 
-  private:
+  protected:
+    // What the choice contributes to the ratio: [q(t | k) / (1 - q(t' | k))] / [q(t' | k) / (1 - q(t | k))].
+    double ratio_of_choices(int k, int t, int other) const {
+        const double q = techniques_.probability_given_length(k, t);
+        const double q_other = techniques_.probability_given_length(k, other);
+        return q * (1 - q) / (q_other * (1 - q_other));
+    }
+
     Chart& chart_;
     const TechniqueDistribution& techniques_;
+};
+
+// Same k and same u, another technique: a different path. Coordinates that the chart t' reads and t does not are drawn
+// fresh, and their densities (one) cancel against those forgotten on the way back:
+//     r = [C(y) / C(x)] times the ratio of the choices.
+class TechniqueChange final : public ToOtherTechnique {
+  public:
+    using ToOtherTechnique::ToOtherTechnique;
+    std::string_view name() const override { return "technique-change"; }
+    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 };
 
 extern template class SmallStep<KelemenKernel>;

@@ -53,28 +53,16 @@ StrategyInfo small_step() {
     return info;
 }
 
-std::string needs_two_edges(const Scene&, const PathLengths& lengths) {
-    return lengths.max > 1 ? "" : "paths of one edge have one technique only";
-}
-
-StrategyInfo technique_change() {
+template <class Move>
+StrategyInfo to_other_technique(const char* name, const char* description) {
     StrategyInfo info;
-    info.name = "technique-change";
-    info.description = "Keeps the coordinates and reads them by another technique of the same length: another path";
-    info.hindrance = needs_two_edges;
-    info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<TechniqueChange>(c.chart, c.techniques);
+    info.name = name;
+    info.description = description;
+    info.hindrance = [](const Scene&, const PathLengths& lengths) {
+        return std::string(lengths.max > 1 ? "" : "paths of one edge have one technique only");
     };
-    return info;
-}
-
-StrategyInfo chart_swap() {
-    StrategyInfo info;
-    info.name = "chart-swap";
-    info.description = "Keeps the path and goes over to another technique, with coordinates from the exact inverse";
-    info.hindrance = needs_two_edges;
     info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<ChartSwap>(c.chart, c.techniques);
+        return std::make_unique<Move>(c.chart, c.techniques);
     };
     return info;
 }
@@ -82,7 +70,14 @@ StrategyInfo chart_swap() {
 }  // namespace
 
 const std::vector<StrategyInfo>& strategy_registry() {
-    static const std::vector<StrategyInfo> registry = {large_step(), small_step(), technique_change(), chart_swap()};
+    static const std::vector<StrategyInfo> registry = {
+        large_step(), small_step(),
+        to_other_technique<TechniqueChange>(
+            "technique-change",
+            "Keeps the coordinates and reads them by another technique of the same length: another path"),
+        to_other_technique<ChartSwap>(
+            "chart-swap",
+            "Keeps the path and goes over to another technique, with coordinates from the exact inverse")};
     return registry;
 }
 

@@ -21,15 +21,6 @@ BsdfNumbers uniform_numbers(Rng& rng) {
     return n;
 }
 
-InverseNumbers fresh_numbers(Rng& rng) {
-    InverseNumbers v;
-    v.branch = rng.uniform();
-    v.place = rng.uniform();
-    v.direction.x() = rng.uniform();
-    v.direction.y() = rng.uniform();
-    return v;
-}
-
 // Uniform numbers that give a sample; empty if there is none among many.
 std::optional<Draw> draw(const BsdfCase& c, const Vec3& known, Mode mode, Rng& rng) {
     for (int i = 0; i < 200; ++i) {
