@@ -209,9 +209,26 @@ json reference_json(const ComparisonPlan& plan, const Reference& reference, doub
     return j;
 }
 
+// Share of the reference's values whose standard error is more than half of sqrt(R^2 + epsilon mean(R)^2): what errors
+// are divided by is chance there.
+double unreliable_share(const Reference& reference) {
+    double mean = 0, unreliable = 0;
+    const double count = static_cast<double>(reference.image.rgb.size());
+    for (const float v : reference.image.rgb) mean += v / count;
+    for (std::size_t i = 0; i < reference.image.rgb.size(); ++i)
+        unreliable +=
+            reference.variance->rgb[i] > 0.25 * (sqr(double{reference.image.rgb[i]}) + metric_epsilon * sqr(mean));
+    return unreliable / count;
+}
+
 std::vector<std::string> reference_warnings(const Reference& reference, double own_relmse, double smallest_relmse) {
     if (!reference.variance)
         return {"how noisy the reference is is not known: its noise counts as bias of every entry"};
+    if (const double share = unreliable_share(reference); share > 0.01)
+        return {
+            fmt::format("the standard error of the reference is more than half its value in {:.0f}% of its values: "
+                        "relative errors and biases mean little there; give it more time (--reference-time)",
+                        100 * share)};
     if (own_relmse > largest_reference_share * smallest_relmse)
         return {
             fmt::format("the reference has a relMSE of {:.2g}, more than {:.0f}% of that of an entry ({:.2g}); give it "
