@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -68,8 +69,8 @@ void print_summary(const RenderOptions& options, const Json& report, const Rende
                unit, format_count(numbers.at("mutations_per_second").get<double>()), unit, acceptance);
     const bool luminance =
         options.settings.integrator != Integrator::mmlt || options.settings.mix.target == TargetFunction::luminance;
-    fmt::print("mean {} {:.6g}, standard error {:.2g}\n", luminance ? "luminance" : "of the paths' largest channel",
-               s.b, s.b_standard_error);
+    fmt::print("mean {} {:.6g}{}\n", luminance ? "luminance" : "of the paths' largest channel", s.b,
+               std::isfinite(s.b_standard_error) ? fmt::format(", standard error {:.2g}", s.b_standard_error) : "");
     print_errors(s.errors, options.verbose);
     if (!options.verbose) return;
     fmt::print("{} rays/s, {} threads, {} CPU, peak memory {}\n",

@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "base/phase.h"
@@ -124,6 +125,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Re
         for (std::size_t i = 0; i < result.image.rgb.size(); i += 3)
             sum += luminance({result.image.rgb[i], result.image.rgb[i + 1], result.image.rgb[i + 2]});
         s.b = sum / (static_cast<double>(result.image.rgb.size()) / 3);
+        s.b_standard_error = std::numeric_limits<double>::infinity();  // not known
         if (s.non_finite) s.warnings.push_back("some contributions were NaN or infinite and were left out");
     }
     return result;
