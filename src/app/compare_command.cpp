@@ -1,11 +1,9 @@
 // `keyhole compare`
-#include <fmt/format.h>
-
-#include <array>
 #include <memory>
 
 #include "app/command.h"
 #include "app/comparison_options.h"
+#include "app/report.h"
 #include "base/error.h"
 
 namespace keyhole {
@@ -26,21 +24,12 @@ struct CompareOptions {
     std::vector<Integrator> integrators;
 };
 
-void split(const std::string& list, const std::function<void(const std::string&)>& take) {
-    for (std::size_t begin = 0; begin <= list.size();) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        if (end == begin) throw InputError({}, "'" + list + "' has an empty name");
-        take(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-}
-
 int run(const CompareOptions& options) {
     std::vector<ComparedEntry> entries;
     for (const std::string& name : options.mixes) {
         ComparedEntry entry;
         entry.mix = find_mix(name);
-        apply_settings(entry.mix, options.comparison.settings);
+        apply_settings(entry.mix, options.comparison.mix.settings);
         entry.name = entry.mix.name;
         entries.push_back(std::move(entry));
     }
@@ -56,19 +45,17 @@ void add_compare_command(CLI::App& keyhole, Runner& runner) {
     const auto options = std::make_shared<CompareOptions>();
     CLI::App* command = keyhole.add_subcommand("compare", "Measure which mixes render a scene best, at equal time");
     const auto mixes = [options](const std::string& text) {
-        split(text, [&](const std::string& name) { options->mixes.push_back(name); });
+        for (const std::string& name : split_list(text)) options->mixes.push_back(name);
     };
     add_parsed(*command, "--mixes", "NAME|FILE,...", mixes,
                "Mixes to compare: built-in ones (keyhole mixes) or files (.toml); speed-ups are over the first entry")
         ->take_all();
     const auto integrators = [options](const std::string& text) {
-        split(text, [&](const std::string& name) {
-            const std::vector<std::string> valid = {"path", "bdpt"};
-            const auto found = std::find(valid.begin(), valid.end(), name);
-            if (found == valid.end())
-                throw InputError({}, "unknown integrator '" + name + "'; " + valid_names(name, valid));
-            options->integrators.push_back(found == valid.begin() ? Integrator::path : Integrator::bdpt);
-        });
+        for (const std::string& name : split_list(text)) {
+            const Integrator integrator = integrator_of(name);
+            if (integrator == Integrator::mmlt) throw InputError({}, "'mmlt' is a mix: --mixes mmlt");
+            options->integrators.push_back(integrator);
+        }
     };
     add_parsed(*command, "--integrators", "path,bdpt", integrators, "Integrators without chains to compare as well")
         ->take_all();

@@ -70,14 +70,10 @@ void add_reference_options(CLI::App& command, ComparisonOptions& options) {
 }
 
 void add_path_options(CLI::App& command, ComparisonOptions& options) {
-    const auto key = [&](const char* name, const char* set, const char* help) {
-        const auto read = [&options, name, set](const std::string& text) {
-            options.settings.push_back({set, text, name});
-        };
-        add_parsed(command, name, "INTEGER", read, help)->group(path_group);
-    };
-    key("--max-length", "lengths.max", "Most edges of a path, of all entries and the reference");
-    key("--min-length", "lengths.min", "Fewest edges of a path");
+    add_mix_key(command, options.mix, "--max-length", "lengths.max",
+                "Most edges of a path, of all entries and the reference")
+        ->group(path_group);
+    add_mix_key(command, options.mix, "--min-length", "lengths.min", "Fewest edges of a path")->group(path_group);
 }
 
 void add_output_options(CLI::App& command, ComparisonOptions& options) {
@@ -174,7 +170,7 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
     add_length_options(command, options);
     add_reference_options(command, options);
     add_path_options(command, options);
-    const auto set = [&options](const Setting& s) { options.settings.push_back(s); };
+    const auto set = [&options](const Setting& s) { options.mix.settings.push_back(s); };
     add_set_option(command, set)->group(path_group);
     const auto seed = [&options](const std::string& text) { options.plan.seed = parse_unsigned(text); };
     add_parsed(command, "--seed", "INTEGER", seed, "From which the seeds of all runs are made [default: 0]")
@@ -186,7 +182,7 @@ ComparedEntry integrator_entry(const ComparisonOptions& options, Integrator inte
     ComparedEntry entry;
     entry.name = integrator_name(integrator);
     entry.integrator = integrator;
-    for (const Setting& s : options.settings)
+    for (const Setting& s : options.mix.settings)
         if (s.key == "lengths.min" || s.key == "lengths.max") set_value(entry.mix, s.key, s.text);
     return entry;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/console.h"
+#include "app/mix_options.h"
 #include "app/options.h"
 #include "compare/comparison.h"
 #include "strategies/mix.h"
@@ -14,7 +15,7 @@ namespace keyhole {
 
 struct ComparisonOptions {
     SceneOptions scene;
-    std::vector<Setting> settings;  // of all mixes: --set, --max-length, ...
+    MixOptions mix;  // its settings are of all mixes: --set, --max-length, ...; its name is for sweeps
     double time = 0, mutations = 0;
     std::string equal;  // empty: time, or mutations where their number is given
     double reference_time = 0;

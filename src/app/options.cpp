@@ -74,6 +74,17 @@ CLI::Option* add_choice(CLI::App& command, const std::string& names, const std::
     return add_parsed(command, names, type, read, help);
 }
 
+std::vector<std::string> split_list(const std::string& list) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        if (end == begin) throw InputError({}, "'" + list + "' has an empty name");
+        parts.push_back(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
 ReconstructionFilter filter_of(const std::string& name) {
     for (const ReconstructionFilter& filter : {make_box_filter(), make_tent_filter(), make_gaussian_filter()})
         if (name == filter.name()) return filter;

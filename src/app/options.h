@@ -36,6 +36,9 @@ struct SceneOptions {
 };
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
+// "a,b,c" as its parts. Throws InputError for an empty one.
+std::vector<std::string> split_list(const std::string& list);
+
 // The filter of a name ("box", "tent", "gaussian") with its default width. Throws InputError for other names.
 ReconstructionFilter filter_of(const std::string& name);
 

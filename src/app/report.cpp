@@ -1,14 +1,13 @@
 #include "app/report.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <ctime>
 #include <filesystem>
 
 #include "app/version.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/units.h"
 
 namespace keyhole {
 namespace {
@@ -95,18 +94,6 @@ Json film_json(const FilmSettings& film) {
             {"filter_radius", film.filter.radius}};
 }
 
-const char* integrator_name(Integrator integrator) {
-    switch (integrator) {
-        case Integrator::path:
-            return "path";
-        case Integrator::bdpt:
-            return "bdpt";
-        case Integrator::mmlt:
-            break;
-    }
-    return "mmlt";
-}
-
 Integrator integrator_of(const std::string& name) {
     for (const Integrator integrator : {Integrator::path, Integrator::bdpt, Integrator::mmlt})
         if (name == integrator_name(integrator)) return integrator;
@@ -123,8 +110,6 @@ double overall_acceptance(const RenderStatistics& statistics) {
     }
     return proposals > 0 ? expected / proposals : -1;
 }
-
-std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 Json describe_run(const SceneOptions& options, const LoadedScene& loaded, const RenderSettings& settings) {
     return {{"versions", versions()},

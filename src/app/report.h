@@ -32,14 +32,10 @@ std::string json_text(const Json& json, int indent = -1);
 // ("keyhole:run").
 std::map<std::string, std::string> image_metadata(const Json& report);
 
-const char* integrator_name(Integrator integrator);
 Integrator integrator_of(const std::string& name);  // throws InputError for other names
 const char* work_unit(Integrator integrator);       // "mutations" or "samples"
 
 // Over all strategies; negative where nothing was proposed.
 double overall_acceptance(const RenderStatistics& statistics);
-
-// Now, as "2024-05-31T12:00:00Z".
-std::string utc_now();
 
 }  // namespace keyhole

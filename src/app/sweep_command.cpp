@@ -21,22 +21,15 @@ constexpr const char* examples = R"(Examples:
 
 struct SweepOptions {
     ComparisonOptions comparison;
-    std::string mix = "mmlt", key, values;
+    std::string key, values;
     int steps = 6;
 };
 
 // "a..b" in steps that are even in logarithms if both are above zero, else even; or "a,b,c" as they are.
 std::vector<std::string> listed_values(const std::string& text, int steps) {
     const std::size_t dots = text.find("..");
+    if (dots == std::string::npos) return split_list(text);
     std::vector<std::string> values;
-    if (dots == std::string::npos) {
-        for (std::size_t begin = 0; begin <= text.size();) {
-            const std::size_t end = std::min(text.find(',', begin), text.size());
-            values.push_back(text.substr(begin, end - begin));
-            begin = end + 1;
-        }
-        return values;
-    }
     constexpr double most = std::numeric_limits<double>::max();
     const double first = parse_real(text.substr(0, dots), -most, most);
     const double last = parse_real(text.substr(dots + 2), -most, most);
@@ -57,8 +50,7 @@ bool is_integer(const Mix& mix, const std::string& key) {
 
 int run(const SweepOptions& options) {
     std::vector<ComparedEntry> entries;
-    Mix base = find_mix(options.mix);
-    apply_settings(base, options.comparison.settings);
+    const Mix base = options.comparison.mix.apply(builtin_mix("mmlt"));
     for (std::string text : listed_values(options.values, options.steps)) {
         if (is_integer(base, options.key) && text.find_first_of(".e") != std::string::npos)
             text = fmt::format("{:.0f}", parse_real(text, -1e18, 1e18));
@@ -79,7 +71,7 @@ int run(const SweepOptions& options) {
 void add_sweep_command(CLI::App& keyhole, Runner& runner) {
     const auto options = std::make_shared<SweepOptions>();
     CLI::App* command = keyhole.add_subcommand("sweep", "Measure how a parameter of a mix changes its speed and error");
-    const auto mix = [options](const std::string& text) { options->mix = text; };
+    const auto mix = [options](const std::string& text) { options->comparison.mix.name = text; };
     add_parsed(*command, "--mix", "NAME|FILE", mix,
                "The mix: one that `keyhole mixes` lists, or a file (.toml) [default: mmlt]");
     const auto vary = [options](const std::string& text) {

@@ -1,9 +1,11 @@
 #include "base/units.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <optional>
 #include <span>
@@ -150,5 +152,7 @@ std::string format_bytes(std::uint64_t bytes) {
     static constexpr std::array prefixes = {" B", " KiB", " MiB", " GiB", " TiB"};
     return with_prefix(static_cast<double>(bytes), 1024, prefixes);
 }
+
+std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 }  // namespace keyhole

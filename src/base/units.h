@@ -36,4 +36,7 @@ std::string format_count(double count);
 // The same in bytes with binary prefixes: "512 B", "1.50 GiB".
 std::string format_bytes(std::uint64_t bytes);
 
+// Now, as "2024-05-31T12:00:00Z".
+std::string utc_now();
+
 }  // namespace keyhole

@@ -106,7 +106,7 @@ class Comparison {
         if (entry.integrator == Integrator::mmlt) {
             j["mix"] = write_mix(entry.mix);
         } else {
-            j["integrator"] = entry.integrator == Integrator::path ? "path" : "bdpt";
+            j["integrator"] = integrator_name(entry.integrator);
             j["lengths"] = {entry.mix.lengths.min, entry.mix.lengths.max};
         }
         return j;

@@ -30,14 +30,12 @@ json read_description(const std::string& filename) {
     return text.empty() ? json() : json::parse(text);
 }
 
-const char* name_of(Integrator integrator) { return integrator == Integrator::path ? "path" : "bdpt"; }
-
 // Mean and variance of the batches' images, and how they were made.
 class Batches {
   public:
     Batches(const Scene& scene, const ReferencePlan& plan) : scene_(scene), plan_(plan) {
         identity_ = {{"scene", hash_text(scene.content_hash())},
-                     {"integrator", name_of(plan.integrator)},
+                     {"integrator", integrator_name(plan.integrator)},
                      {"lengths", {plan.lengths.min, plan.lengths.max}},
                      {"seed", plan.seed}};
         if (fs::exists(plan.filename)) load();
@@ -65,7 +63,7 @@ class Batches {
         }
         if (count_ < 2) r.variance.reset();
         r.filename = plan_.filename;
-        r.integrator = name_of(plan_.integrator);
+        r.integrator = integrator_name(plan_.integrator);
         r.samples_per_pixel = samples_ * count_;
         r.seconds = seconds_;
         return r;

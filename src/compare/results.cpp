@@ -1,16 +1,15 @@
 #include "compare/results.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/process.h"
+#include "base/units.h"
 #include "base/vec.h"
 #include "compare/error_split.h"
 #include "compare/metrics.h"
@@ -246,7 +245,7 @@ json make_results(const Scene& scene, const ComparisonPlan& plan, const Referenc
                     {"version", 1},
                     {"keyhole", plan.program},
                     {"machine", machine_name()},
-                    {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
+                    {"created", utc_now()},
                     {"command", plan.command},
                     {"equal", name_of(plan.equal)},
                     {"budget", plan.budget},

@@ -1,6 +1,7 @@
 #include "inverse/round_trips.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -14,13 +15,6 @@ namespace {
 constexpr std::size_t cells = 20;
 constexpr double negligible_share = 1e-7;
 constexpr std::uint64_t paths_for_mean = 500;
-
-// Probability that a chi-square variable exceeds `x`: the normal distribution of its cube root [Wilson and Hilferty
-// 1931], good to 1e-3 for 19 degrees of freedom.
-double chi_square_tail(double x, double degrees) {
-    const double v = 2 / (9 * degrees), z = (std::cbrt(x / degrees) - (1 - v)) / std::sqrt(v);
-    return 0.5 * std::erfc(z / std::sqrt(2.0));
-}
 
 struct Counts {
     std::array<double, cells> drawn{}, inverted{};
@@ -40,7 +34,7 @@ struct Counts {
             chi_square += difference * difference / both;
             ++used;
         }
-        if (used > 1) result.p_value = chi_square_tail(chi_square, used - 1);
+        if (used > 1) result.p_value = boost::math::gamma_q((used - 1) / 2, chi_square / 2);
         return result;
     }
 };

@@ -51,6 +51,18 @@ void check_memory(const Scene& scene, const RenderSettings& s, int threads) {
 
 }  // namespace
 
+const char* integrator_name(Integrator integrator) {
+    switch (integrator) {
+        case Integrator::path:
+            return "path";
+        case Integrator::bdpt:
+            return "bdpt";
+        case Integrator::mmlt:
+            break;
+    }
+    return "mmlt";
+}
+
 RenderSettings resolve(const Scene& scene, RenderSettings s) {
     const bool chains = s.integrator == Integrator::mmlt;
     int limits = 0;

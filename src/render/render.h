@@ -16,6 +16,7 @@
 namespace keyhole {
 
 enum class Integrator { path, bdpt, mmlt };
+const char* integrator_name(Integrator integrator);
 
 struct RenderSettings {
     Integrator integrator = Integrator::mmlt;

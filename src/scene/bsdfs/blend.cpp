@@ -62,7 +62,7 @@ class Blend final : public Bsdf {
             numbers.branch = takes_first ? position_in_interval(v.branch, 0, p) : position_in_interval(v.branch, p, 1);
         }
         auto n = (takes_first ? *first_ : *second_).invert(x, w_known, w, nested, numbers, mode);
-        if (n) n->lobe = takes_first ? number_in_interval(n->lobe, 0, border) : number_in_interval(n->lobe, border, 1);
+        if (n) n->lobe = lobe_number(takes_first, border, n->lobe);
         return n;
     }
 

@@ -15,6 +15,11 @@ namespace keyhole {
 // number uniformly in that interval (number_in_interval).
 inline double position_in_interval(double u, double begin, double end) { return clamp01((u - begin) / (end - begin)); }
 
+// The number by which the first of two lobes, of probability p, or the second is chosen.
+inline double lobe_number(bool first, double p, double position) {
+    return first ? number_in_interval(position, 0, p) : number_in_interval(position, p, 1);
+}
+
 // Probability of the first of two lobes of powers a and b >= 0 in proportion to them; NaN if both are 0.
 inline double share(double a, double b) { return a / (a + b); }
 

@@ -49,9 +49,9 @@ class Phong final : public Bsdf {
         const double specular = c * square_to_cosine_power_pdf(about_mirror, p.exponent);
         const double diffuse = (1 - c) * square_to_cosine_hemisphere_pdf(w);
         if (!(specular + diffuse > 0)) return std::nullopt;
-        if (v.branch < share(specular, diffuse))
-            return BsdfNumbers{number_in_interval(v.place, 0, c), cosine_power_to_square(about_mirror, p.exponent)};
-        return BsdfNumbers{number_in_interval(v.place, c, 1), cosine_hemisphere_to_square(w)};
+        const bool mirrors = v.branch < share(specular, diffuse);
+        return BsdfNumbers{lobe_number(mirrors, c, v.place),
+                           mirrors ? cosine_power_to_square(about_mirror, p.exponent) : cosine_hemisphere_to_square(w)};
     }
 
     const char* name() const override { return "phong"; }

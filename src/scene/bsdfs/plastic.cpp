@@ -60,8 +60,8 @@ class Plastic final : public Bsdf {
         const double specular = specular_power(fresnel), diffuse = diffuse_power(fresnel);
         if (!((event.delta ? specular : diffuse) > 0)) return std::nullopt;
         const double p = share(specular, diffuse);
-        if (event.delta) return BsdfNumbers{number_in_interval(v.place, 0, p), v.direction};
-        return BsdfNumbers{number_in_interval(v.place, p, 1), cosine_hemisphere_to_square(w)};
+        return BsdfNumbers{lobe_number(event.delta, p, v.place),
+                           event.delta ? v.direction : cosine_hemisphere_to_square(w)};
     }
 
     const char* name() const override { return "plastic"; }

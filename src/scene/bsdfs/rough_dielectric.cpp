@@ -79,8 +79,7 @@ class RoughDielectric final : public Bsdf {
         if (!(cos_m > 0)) return {};
         const double p = fresnel_dielectric(cos_m, eta).reflectance;
         if (!((sides > 0 ? p : 1 - p) > 0)) return {};
-        return BsdfNumbers{sides > 0 ? number_in_interval(v.place, 0, p) : number_in_interval(v.place, p, 1),
-                           roughness_.at(x.uv).visible_to_square(above, m)};
+        return BsdfNumbers{lobe_number(sides > 0, p, v.place), roughness_.at(x.uv).visible_to_square(above, m)};
     }
 
     const char* name() const override { return "roughdielectric"; }

@@ -58,10 +58,10 @@ class RoughPlastic final : public Bsdf {
         const double of_coat = p * facet_reflection(microfacet_, w_known, w).pdf_light;
         const double of_base = (1 - p) * square_to_cosine_hemisphere_pdf(w);
         if (!(of_coat + of_base > 0)) return {};
-        if (v.branch < share(of_coat, of_base))
-            return BsdfNumbers{number_in_interval(v.place, 0, p),
-                               microfacet_.visible_to_square(w_known, (w_known + w).normalized())};
-        return BsdfNumbers{number_in_interval(v.place, p, 1), cosine_hemisphere_to_square(w)};
+        const bool at_coat = v.branch < share(of_coat, of_base);
+        return BsdfNumbers{lobe_number(at_coat, p, v.place),
+                           at_coat ? microfacet_.visible_to_square(w_known, (w_known + w).normalized())
+                                   : cosine_hemisphere_to_square(w)};
     }
 
     const char* name() const override { return "roughplastic"; }

@@ -41,8 +41,7 @@ class SpecularPair : public DeltaBsdf {
         const double reflection = reflected * reflection_power_, transmission = transmitted * transmission_power_;
         if (!event.delta || !((event.lobe == 0 ? reflection : transmission) > 0)) return std::nullopt;
         const double p = share(reflection, transmission);
-        return BsdfNumbers{event.lobe == 0 ? number_in_interval(v.place, 0, p) : number_in_interval(v.place, p, 1),
-                           v.direction};
+        return BsdfNumbers{lobe_number(event.lobe == 0, p, v.place), v.direction};
     }
 
   private:
