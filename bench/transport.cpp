@@ -12,18 +12,18 @@ namespace {
 constexpr int film_size = 256, max_length = 8;
 
 // Paths of two edges and more, as `keyhole bench` has them: those of one edge cost next to nothing.
-const TechniqueDistribution all_techniques(2, max_length);
+const TechniqueDistribution every_technique(2, max_length);
 
 std::unique_ptr<Scene> load(const std::string& name) { return own_scene(name, film_size, film_size); }
 
 // Rays of one kind that large steps cast, in their order.
 std::vector<Ray> rays_of_large_steps(const Scene& scene, bool occlusion) {
     const CoordinateLayout layout(scene, max_length);
-    Chart chart(scene, layout);
-    const LargeStep large(chart, all_techniques);
+    ChartEvaluator evaluator(scene, layout);
+    const LargeStep large(evaluator, every_technique);
     PssState state(layout);
     std::vector<RecordedRay> recorded;
-    chart.tracer().record_into(&recorded);
+    evaluator.tracer().record_into(&recorded);
     Rng rng(1);
     for (int i = 0; i < 20000; ++i) large.draw(state, rng);
     std::vector<Ray> rays;
@@ -52,8 +52,8 @@ void cast(benchmark::State& state, const std::string& name) {
 void evaluate_chart(benchmark::State& state, const std::string& name) {
     const auto scene = load(name);
     const CoordinateLayout layout(*scene, max_length);
-    Chart chart(*scene, layout);
-    const LargeStep large(chart, all_techniques);
+    ChartEvaluator evaluator(*scene, layout);
+    const LargeStep large(evaluator, every_technique);
     PssState drawn(layout);
     Rng rng(1);
     for (auto _ : state) benchmark::DoNotOptimize(large.draw(drawn, rng));
@@ -68,7 +68,7 @@ void mutate(benchmark::State& state, const std::string& name) {
     settings.mix.chain_count = 1;
     settings = resolve(*scene, settings);
     const CoordinateLayout layout(*scene, max_length);
-    TechniqueDistribution techniques = all_techniques;
+    TechniqueDistribution techniques = every_technique;
     Bootstrap bootstrap = run_bootstrap(*scene, layout, techniques, settings.mix);
     auto chains = start_chains(bootstrap.groups, settings.mix.seed);
     ChainWorker worker(*scene, layout, techniques, settings.mix, bootstrap.groups.size());

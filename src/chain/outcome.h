@@ -20,12 +20,13 @@ enum class Failure : std::uint8_t {
     outside_support,  // the reverse move could not have proposed the current state
     inverse_failed,   // no coordinates were found for the path, or they do not lead back to it
     non_finite,       // a NaN or an infinity: a bug, counted apart so that it is seen
+    unchanged,        // the proposal is the current state itself
     other,
 };
 
-inline constexpr std::array<std::string_view, 10> failure_names = {
+inline constexpr std::array<std::string_view, 11> failure_names = {
     "none",         "eye subpath short", "light subpath short", "occluded",   "zero bsdf",
-    "outside film", "outside support",   "inverse failed",      "non-finite", "other"};
+    "outside film", "outside support",   "inverse failed",      "non-finite", "unchanged", "other"};
 inline constexpr std::size_t failure_kinds = failure_names.size();
 
 inline std::string_view failure_name(Failure failure) { return failure_names[static_cast<std::size_t>(failure)]; }

@@ -26,7 +26,7 @@ bool invert_vertex(const CoordinateLayout& layout, const Vertex& prev, const Ver
 
 Inversion invert_eye(const Scene& scene, const RasterWindow& window, const CoordinateLayout& layout,
                      std::span<const Vertex> x, int t, double* u, Rng& rng) {
-    const SensorPoint e{x[0].x.p, x[0].pdf_fwd};
+    const SensorPoint e = sensor_point(x[0]);
     const InverseNumbers v = fresh_numbers(rng);
     layout.set_lens(u, scene.sensor().invert_point(e, v.direction));
     if (t == 1) return {};
@@ -73,10 +73,9 @@ Inversion invert(const Scene& scene, const RasterWindow& window, const Coordinat
     return invert_light(scene, layout, x, u.s(), u.data() + layout.eye_count(t), rng);
 }
 
-double deviation(const Chart& chart, std::span<const Vertex> x, int i) {
-    const int t = static_cast<int>(chart.eye().size()), k = static_cast<int>(x.size()) - 1;
-    const Vertex& here = x[i];
-    const Vertex& there = i < t ? chart.eye()[i] : chart.light()[k - i];
+double deviation(const SampledPath& traced, std::span<const Vertex> x, int i) {
+    const int t = traced.t, k = traced.k;
+    const Vertex &here = x[i], &there = traced.x()[i];
     // A point on an emitter has its BSDF only where it was hit.
     const bool same =
         i == k ? there.x.emitter == here.x.emitter : there.x.bsdf == here.x.bsdf && there.infinite == here.infinite;
@@ -85,14 +84,14 @@ double deviation(const Chart& chart, std::span<const Vertex> x, int i) {
     if (!same || !same_plane || there.delta != here.delta) return std::numeric_limits<double>::infinity();
     const double distance = (there.x.p - here.x.p).norm(), in_widths = distance * std::sqrt(there.pdf_fwd);
     if (i == 0 || (i == k && i >= t)) return in_widths;  // the subpath's start
-    const Vertex& prev = i < t ? chart.eye()[i - 1] : chart.light()[k - i - 1];
+    const Vertex& prev = traced.x()[i < t ? i - 1 : i + 1];
     if (there.infinite) return std::max(in_widths, distance);
     return std::max(in_widths, prev.infinite ? 0 : distance / (there.x.p - prev.x.p).norm());
 }
 
-double deviation(const Chart& chart, std::span<const Vertex> x) {
+double deviation(const SampledPath& traced, std::span<const Vertex> x) {
     double largest = 0;
-    for (int i = 0; i < static_cast<int>(x.size()); ++i) largest = std::max(largest, deviation(chart, x, i));
+    for (int i = 0; i < static_cast<int>(x.size()); ++i) largest = std::max(largest, deviation(traced, x, i));
     return largest;
 }
 

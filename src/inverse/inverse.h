@@ -29,12 +29,11 @@ struct Inversion {
 Inversion invert(const Scene& scene, const RasterWindow& window, const CoordinateLayout& layout,
                  std::span<const Vertex> x, int t, PrimarySample& u, Rng& rng);
 
-// How far vertex i of the path that a chart has traced last is from x_i: in units of the width 1 / sqrt(density) of
-// what sampled it, or seen from the vertex before in radians, whichever is more. Infinite where it is not of the same
-// kind.
-double deviation(const Chart& chart, std::span<const Vertex> x, int i);
+// How far vertex i of a traced path is from x_i: in units of the width 1 / sqrt(density) of what sampled it, or seen
+// from the vertex before in radians, whichever is more. Infinite where it is not of the same kind.
+double deviation(const SampledPath& traced, std::span<const Vertex> x, int i);
 // The largest of all vertices.
-double deviation(const Chart& chart, std::span<const Vertex> x);
+double deviation(const SampledPath& traced, std::span<const Vertex> x);
 
 // Of paths that count as the same. Rounding is far below, another path far above.
 inline constexpr double largest_deviation = 1e-3;

@@ -95,7 +95,7 @@ class RoundTripping {
             const Evaluation e = chart_.evaluate(u_);
             if (e.failure != PathFailure::none || !(e.target > 0)) continue;
             --wanted;
-            body(join(chart_.eye(), chart_.light()), e.target);
+            body(join(chart_.path().eye(), chart_.path().light()), e.target);
         }
     }
 
@@ -126,7 +126,7 @@ class RoundTripping {
         const int k = path.length();
         const auto enter = [&](int i) {  // false: it and what follows failed
             Sampler& sampler = sampler_of(path, t, i);
-            const double off = traced ? deviation(chart_, path.x, i) : 1;
+            const double off = traced ? deviation(chart_.path(), path.x, i) : 1;
             ++sampler.trips.tries;
             if (off < largest_deviation) {
                 sampler.deviations.push_back(off);

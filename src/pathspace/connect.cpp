@@ -1,5 +1,6 @@
 #include "pathspace/connect.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -69,10 +70,10 @@ PathFailure hit_emitter(const Scene& scene, std::span<const Vertex> eye, Connect
 }
 
 // t = 1: y_{s-1} is seen by the sensor.
-PathFailure see_from_sensor(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vertex& x0,
-                            std::span<const Vertex> light, Connection& c) {
-    const Vertex& y = light.back();
-    const auto view = tracer.scene().sensor().view(sensor, y.x.p);
+PathFailure see_from_sensor(Tracer& tracer, const RasterWindow& window, const Vertex& x0, std::span<const Vertex> light,
+                            Connection& c) {
+    const Vertex& y = light.front();
+    const auto view = tracer.scene().sensor().view(sensor_point(x0), y.x.p);
     if (!view || !window.contains(view->raster)) return PathFailure::outside_film;
     c.raster = view->raster;
     const Edge edge(y.x.p, x0.x.p, x0.infinite);
@@ -113,7 +114,7 @@ PathFailure connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const V
 
 PathFailure connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::span<const Vertex> light,
                              Connection& c) {
-    const Vertex &x = eye.back(), &y = light.back();
+    const Vertex &x = eye.back(), &y = light.front();
     const Edge edge(x.x.p, y.x.p, false);
     const Vec3& d = edge.d;
     const double inv_r2 = edge.inv_r2;
@@ -130,44 +131,30 @@ PathFailure connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::s
     return PathFailure::none;
 }
 
-}  // namespace
-
-PathFailure connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
-                    std::span<const Vertex> light, Connection& c) {
-    if (light.empty()) return hit_emitter(tracer.scene(), eye, c);
-    if (eye.size() > 1 && !connectable(eye.back())) return PathFailure::zero_bsdf;
-    if (light.size() > 1 && !connectable(light.back())) return PathFailure::zero_bsdf;
-    if (eye.size() == 1) {
-        if (light.size() == 1) return PathFailure::zero_bsdf;
-        return see_from_sensor(tracer, window, sensor, eye.front(), light, c);
-    }
-    if (light.size() == 1) return connect_emitter(tracer, eye, light.front(), c);
-    return connect_surfaces(tracer, eye, light, c);
-}
-
-double mis_weight(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,
-                  Techniques techniques) {
+// Calls visit(t', p_t' / p_t) for the techniques t' != t of the set that can make the path.
+template <class Visit>
+inline void for_density_ratios(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,
+                               TechniqueSet techniques, const Visit& visit) {
     const int t = static_cast<int>(eye.size()), s = static_cast<int>(light.size()), k = s + t - 1;
-    double sum = 1;
-    // Towards the emitter: technique i+1 makes x_i from the eye side and connects x_i to x_{i+1}.
+    // Towards the emitter: technique i+1 makes x_i from the eye side and connects x_i to x_{i+1}. The connected
+    // vertices scatter by smooth lobes.
     double ratio = 1;
-    bool previous_delta = false;  // the event at x_i; the connected vertices scatter by smooth lobes
     for (int i = t; i <= k; ++i) {
-        const Vertex& v = light[k - i];
+        const Vertex& v = light[i - t];
         const double eye_pdf = i == t ? junction.eye_t : (i == t + 1 ? junction.eye_t1 : v.pdf_rev);
         ratio *= eye_pdf / v.pdf_fwd;
         if (i == k) {
             const EmitterTraits& emitter = v.x.emitter->traits();
-            if ((emitter.surface || emitter.environment) && !emitter.delta) sum += ratio;
+            if ((emitter.surface || emitter.environment) && !emitter.delta && techniques.holds(0)) visit(k + 1, ratio);
             break;
         }
         const bool delta = i > t && v.delta;
-        const bool next_delta = i + 1 < k && light[k - i - 1].delta;
-        if (!delta && !next_delta && (techniques == Techniques::all || i + 1 >= k)) sum += ratio;
+        const bool next_delta = i + 1 < k && light[i + 1 - t].delta;
+        if (!delta && !next_delta && techniques.holds(k - i)) visit(i + 1, ratio);
     }
     // Towards the sensor: technique i connects x_{i-1} to x_i.
     ratio = 1;
-    previous_delta = false;
+    bool previous_delta = false;
     for (int i = t - 1; i >= 1; --i) {
         const Vertex& v = eye[i];
         const double light_pdf = i == t - 1 ? junction.light_t1 : (i == t - 2 ? junction.light_t2 : v.pdf_rev);
@@ -175,9 +162,41 @@ double mis_weight(std::span<const Vertex> eye, std::span<const Vertex> light, co
         if (k == 1) break;
         const bool delta = previous_delta;
         previous_delta = i > 1 && eye[i - 1].delta;
-        if (!delta && !previous_delta && (techniques == Techniques::all || i >= k)) sum += ratio;
+        if (!delta && !previous_delta && techniques.holds(k + 1 - i)) visit(i, ratio);
     }
+}
+
+}  // namespace
+
+PathFailure connect(Tracer& tracer, const RasterWindow& window, std::span<const Vertex> eye,
+                    std::span<const Vertex> light, Connection& c) {
+    if (light.empty()) return hit_emitter(tracer.scene(), eye, c);
+    if (eye.size() > 1 && !connectable(eye.back())) return PathFailure::zero_bsdf;
+    if (light.size() > 1 && !connectable(light.front())) return PathFailure::zero_bsdf;
+    if (eye.size() == 1) {
+        if (light.size() == 1) return PathFailure::zero_bsdf;
+        return see_from_sensor(tracer, window, eye.front(), light, c);
+    }
+    if (light.size() == 1) return connect_emitter(tracer, eye, light.front(), c);
+    return connect_surfaces(tracer, eye, light, c);
+}
+
+double mis_weight(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,
+                  TechniqueSet techniques) {
+    double sum = 1;
+    for_density_ratios(eye, light, junction, techniques, [&](int, double ratio) { sum += ratio; });
     return 1 / sum;
+}
+
+void mis_weights(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,
+                 TechniqueSet techniques, std::span<double> weights) {
+    std::fill(weights.begin(), weights.end(), 0.0);
+    double sum = weights[eye.size() - 1] = 1;
+    for_density_ratios(eye, light, junction, techniques, [&](int t, double ratio) {
+        weights[t - 1] = ratio;
+        sum += ratio;
+    });
+    for (double& w : weights) w /= sum;
 }
 
 }  // namespace keyhole

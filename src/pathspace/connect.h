@@ -1,7 +1,9 @@
-// Connecting an eye subpath x_0..x_{t-1} and a light subpath y_0..y_{s-1} into a path of k = s + t - 1 edges, and the
-// balance-heuristic weight of the result.
+// Connecting an eye subpath x_0 .. x_{t-1} and a light subpath x_t .. x_k into a path of k edges, s = k + 1 - t, and
+// the balance-heuristic weights of the result. Subpaths are spans in the path's order: the eye's ends and the light's
+// begins with the vertex that is connected.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "pathspace/subpath.h"
@@ -34,21 +36,30 @@ struct Connection {
     Junction junction;
 };
 
-// Subpaths as spans whose last vertex is the one connected. `light` may be empty (s = 0: the eye subpath must end on an
-// emitter), and `eye` may hold the sensor alone (t = 1). k = 1 is sampled by s = 0 only.
+// `light` may be empty (s = 0: the eye subpath must end on an emitter), and `eye` may hold the sensor alone (t = 1).
+// k = 1 is sampled by s = 0 only.
 // Everything that is cheap is tested before the shadow ray.
-PathFailure connect(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, std::span<const Vertex> eye,
+PathFailure connect(Tracer& tracer, const RasterWindow& window, std::span<const Vertex> eye,
                     std::span<const Vertex> light, Connection& c);
 
-// Which of a path's techniques take part in the weights.
-enum class Techniques {
-    all,            // t = 1 .. k+1
-    unidirectional  // t = k and k+1: next-event estimation and hitting the emitter
+// Which techniques take part in the weights: those with so many vertices from the light.
+struct TechniqueSet {
+    int min_light = 0, max_light = std::numeric_limits<int>::max();
+
+    bool holds(int s) const { return min_light <= s && s <= max_light; }
+    bool operator==(const TechniqueSet&) const = default;
 };
+inline constexpr TechniqueSet all_techniques{};
+inline constexpr TechniqueSet unidirectional_techniques{0, 1};  // hitting the emitter and next-event estimation
 
 // w_t(x) = p_t / sum p_t', by the ratio recurrence p_{i+1} / p_i = eye_i / light_i along the path: no product over the
-// whole path is ever formed.
+// whole path is ever formed. Technique t itself must belong to the set.
 double mis_weight(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,
-                  Techniques techniques);
+                  TechniqueSet techniques);
+
+// The same of all techniques: weights[t' - 1] = w_t'(x) for t' in [1, k+1]; 0 for those that cannot make the path or do
+// not belong to the set. Room for k + 1 weights.
+void mis_weights(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,
+                 TechniqueSet techniques, std::span<double> weights);
 
 }  // namespace keyhole

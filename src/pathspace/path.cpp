@@ -43,7 +43,7 @@ Event event(const Path& path, int i) {
 Path join(std::span<const Vertex> eye, std::span<const Vertex> light) {
     Path path;
     path.x.assign(eye.begin(), eye.end());
-    path.x.insert(path.x.end(), light.rbegin(), light.rend());
+    path.x.insert(path.x.end(), light.begin(), light.end());
     // The connected vertices scatter by smooth lobes, whatever their subpath may have done there afterwards.
     if (!eye.empty() && !light.empty()) path.x[eye.size() - 1].delta = path.x[eye.size()].delta = false;
     return path;
@@ -56,7 +56,7 @@ Spectrum contribution(const Scene& scene, const Path& path) {
     const Vertex& x1 = path.x[1];
     // From the sensor: importance per solid angle (or perpendicular area), and the rest of the first geometry term.
     const auto view =
-        scene.sensor().view({x0.x.p, x0.pdf_fwd}, x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p);
+        scene.sensor().view(sensor_point(x0), x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p);
     if (!view) return Spectrum::Zero();
     Spectrum f = Spectrum::Constant(view->importance * to_measure(x0, x1, x1.infinite ? x1.x.p : direction(x1, x0)));
     for (int i = 1; i < k; ++i) {
@@ -81,7 +81,7 @@ PathDensities densities(const Scene& scene, const RasterWindow& window, const Pa
     const Vertex &x0 = path.x[0], &x1 = path.x[1], &xk = path.x[k];
     p.eye[0] = x0.pdf_fwd;
     if (const auto view =
-            scene.sensor().view({x0.x.p, x0.pdf_fwd}, x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p))
+            scene.sensor().view(sensor_point(x0), x1.infinite ? Vec3(x0.x.p + scene.radius() * x1.x.p) : x1.x.p))
         p.eye[1] =
             view->raster_per_measure / window.area() * to_measure(x0, x1, x1.infinite ? x1.x.p : direction(x1, x0));
     const Emitter& emitter = *xk.x.emitter;

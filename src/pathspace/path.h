@@ -16,7 +16,20 @@ struct Path {
     int length() const { return static_cast<int>(x.size()) - 1; }
 };
 
-// Joins an eye subpath and a light subpath (both from their own start).
+// A path as technique t made it, with all that its subpaths know: x_0 .. x_{t-1} as sampled from the eye and x_t .. x_k
+// as sampled from the light.
+struct SampledPath {
+    std::vector<Vertex> room;  // the first k + 1 count
+    int k = 0, t = 0;
+    Junction junction;  // between x_{t-1} and x_t
+    double weight = 0;  // w_t
+
+    std::span<const Vertex> x() const { return {room.data(), static_cast<std::size_t>(k) + 1}; }
+    std::span<const Vertex> eye() const { return {room.data(), static_cast<std::size_t>(t)}; }
+    std::span<const Vertex> light() const { return {room.data() + t, static_cast<std::size_t>(k + 1 - t)}; }
+};
+
+// Joins an eye subpath and a light subpath (both in the path's order).
 Path join(std::span<const Vertex> eye, std::span<const Vertex> light);
 
 // The measurement contribution f(x) of the product area measure (vertices at infinity: solid angle). Positions and

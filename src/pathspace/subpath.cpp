@@ -49,7 +49,7 @@ RasterWindow::RasterWindow(const FilmSettings& film) {
     size = {film.crop_width + 2 * border, film.crop_height + 2 * border};
 }
 
-SensorPoint start_eye(const Scene& scene, const Vec2& u, Vertex& x0) {
+void start_eye(const Scene& scene, const Vec2& u, Vertex& x0) {
     const SensorPoint sensor = scene.sensor().sample_point(u);
     x0.x.p = sensor.p;
     x0.x.ng = Vec3::Zero();
@@ -58,12 +58,11 @@ SensorPoint start_eye(const Scene& scene, const Vec2& u, Vertex& x0) {
     x0.pdf_fwd = sensor.pdf;
     x0.infinite = scene.sensor().traits().infinite;
     x0.delta = false;
-    return sensor;
 }
 
-Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vec2& raster,
-                         Vertex& x0, Vertex& x1, Wanted wanted) {
-    const SensorRay ray = tracer.scene().sensor().ray(sensor, raster);
+Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const Vec2& raster, Vertex& x0, Vertex& x1,
+                         Wanted wanted) {
+    const SensorRay ray = tracer.scene().sensor().ray(sensor_point(x0), raster);
     const double pdf = ray.raster_per_measure / window.area();
     x1.throughput = Spectrum::Constant(window.area());
     if (!tracer.intersect({ray.o, ray.d, 0, ray.tfar}, x1.x, wanted)) {
@@ -74,7 +73,7 @@ Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const Senso
     if (x0.infinite)
         arrive_from_infinity(ray.d, pdf, x1);
     else
-        arrive(sensor.p, ray.d, pdf, 1, x1);
+        arrive(x0.x.p, ray.d, pdf, 1, x1);
     return Extension::surface;
 }
 

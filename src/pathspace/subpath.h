@@ -32,10 +32,10 @@ enum class Extension {
 };
 
 // x_0 of an eye subpath. `u` is read only by sensors with an aperture.
-SensorPoint start_eye(const Scene& scene, const Vec2& u, Vertex& x0);
+void start_eye(const Scene& scene, const Vec2& u, Vertex& x0);
 // x_1, by the ray through a raster position.
-Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const SensorPoint& sensor, const Vec2& raster,
-                         Vertex& x0, Vertex& x1, Wanted wanted = Wanted::surface);
+Extension first_eye_edge(Tracer& tracer, const RasterWindow& window, const Vec2& raster, Vertex& x0, Vertex& x1,
+                         Wanted wanted = Wanted::surface);
 
 // y_0 of a light subpath. Returns false if the scene has no emitter or the drawn point emits nothing.
 bool start_light(const Scene& scene, double u_choice, double u_part, const Vec2& u, Vertex& y0);

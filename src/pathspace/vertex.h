@@ -12,6 +12,7 @@
 
 #include "base/spectrum.h"
 #include "scene/emitter.h"
+#include "scene/sensor.h"
 #include "scene/surface.h"
 
 namespace keyhole {
@@ -33,6 +34,7 @@ struct Vertex {
     std::uint8_t lobe = 0;                          // delta events only: BsdfSample::lobe
 };
 
+inline SensorPoint sensor_point(const Vertex& x0) { return {x0.x.p, x0.pdf_fwd}; }
 inline EmitterPoint emitter_point(const Vertex& v) {
     return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset, v.x.offset_per_length, v.x.primitive};
 }

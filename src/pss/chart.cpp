@@ -6,66 +6,74 @@
 
 namespace keyhole {
 
-Chart::Chart(const Scene& scene, const CoordinateLayout& layout, TargetFunction target)
-    : tracer_(scene),
-      layout_(&layout),
-      target_(target),
-      window_(scene.film()),
-      eye_(layout.max_length() + 1),
-      light_(layout.max_length() + 1) {
-    if (!layout.has_lens()) sensor_point_ = start_eye(scene, {0, 0}, eye_[0]);
+Chart::Chart(const Scene& scene, const CoordinateLayout& layout, const ChartTarget& target)
+    : tracer_(scene), layout_(&layout), target_(target), window_(scene.film()) {
+    path_.room.resize(layout.max_length() + 1);
+    if (layout.has_lens()) return;
+    start_eye(scene, {0, 0}, pinhole_);
+    path_.room[0] = pinhole_;
 }
 
-PathFailure Chart::trace_eye(const double* u) {
+PathFailure Chart::trace_eye(const double* u, SampledPath& path) {
     const Scene& scene = tracer_.scene();
-    if (layout_->has_lens()) sensor_point_ = start_eye(scene, layout_->lens(u), eye_[0]);
-    if (t_ == 1) return PathFailure::none;
+    Vertex* const x = path.room.data();
+    if (layout_->has_lens())
+        start_eye(scene, layout_->lens(u), x[0]);
+    else if (x != path_.room.data())
+        x[0] = pinhole_;
+    if (path.t == 1) return PathFailure::none;
     raster_ = window_.at(layout_->raster(u));
-    const auto wanted = [&](int i) { return s_ == 0 && i + 1 == t_ ? Wanted::emitter : Wanted::surface; };
-    Extension e = first_eye_edge(tracer_, window_, sensor_point_, raster_, eye_[0], eye_[1], wanted(1));
-    int last = 1;
-    for (; last + 1 < t_ && e == Extension::surface; ++last) {
-        const auto block = layout_->eye_block(u, last);
-        e = extend(tracer_, Mode::eye, eye_[last - 1], eye_[last], eye_[last + 1], block.lobe, block.direction,
-                   wanted(last + 1));
+    const int last = path.t - 1;
+    const bool to_emitter = path.t == path.k + 1;
+    const auto wanted = [&](int i) { return to_emitter && i == last ? Wanted::emitter : Wanted::surface; };
+    Extension e = first_eye_edge(tracer_, window_, raster_, x[0], x[1], wanted(1));
+    int i = 1;
+    for (; i < last && e == Extension::surface; ++i) {
+        const auto block = layout_->eye_block(u, i);
+        e = extend(tracer_, Mode::eye, x[i - 1], x[i], x[i + 1], block.lobe, block.direction, wanted(i + 1));
     }
-    if (last + 1 == t_) {
+    if (i == last) {
         if (e == Extension::surface) return PathFailure::none;
         if (e == Extension::dark) return PathFailure::zero_bsdf;
         // Only x_k itself may lie at infinity.
-        if (e == Extension::escaped && s_ == 0 && scene.environment()) return PathFailure::none;
+        if (e == Extension::escaped && to_emitter && scene.environment()) return PathFailure::none;
     }
     return PathFailure::eye_subpath_short;
 }
 
-PathFailure Chart::trace_light(const double* u) {
-    if (s_ == 0) return PathFailure::none;
-    if (!start_light(tracer_.scene(), layout_->emitter(u), layout_->part(u), layout_->point(u), light_[0]))
+PathFailure Chart::trace_light(const double* u, SampledPath& path) {
+    const int s = path.k + 1 - path.t;
+    if (s == 0) return PathFailure::none;
+    Vertex* const y = path.room.data() + path.k;  // y[-j] is the light subpath's vertex j
+    if (!start_light(tracer_.scene(), layout_->emitter(u), layout_->part(u), layout_->point(u), y[0]))
         return PathFailure::light_subpath_short;
-    if (s_ == 1) return PathFailure::none;
-    Extension e = first_light_edge(tracer_, layout_->ray(u), light_[0], light_[1]);
-    int last = 1;
-    for (; last + 1 < s_ && e == Extension::surface; ++last) {
-        const auto block = layout_->light_block(u, last);
-        e = extend(tracer_, Mode::light, light_[last - 1], light_[last], light_[last + 1], block.lobe, block.direction);
+    if (s == 1) return PathFailure::none;
+    Extension e = first_light_edge(tracer_, layout_->ray(u), y[0], y[-1]);
+    int j = 1;
+    for (; j + 1 < s && e == Extension::surface; ++j) {
+        const auto block = layout_->light_block(u, j);
+        e = extend(tracer_, Mode::light, y[1 - j], y[-j], y[-j - 1], block.lobe, block.direction);
     }
-    return last + 1 == s_ && e == Extension::surface ? PathFailure::none : PathFailure::light_subpath_short;
+    return j + 1 == s && e == Extension::surface ? PathFailure::none : PathFailure::light_subpath_short;
 }
 
-Evaluation Chart::evaluate(const PrimarySample& u) {
+Evaluation Chart::evaluate(const PrimarySample& u, SampledPath& path) {
     const PhaseScope phase(Phase::shading);
-    t_ = u.t;
-    s_ = u.s();
+    path.k = u.k;
+    path.t = u.t;
     Evaluation result;
-    if ((result.failure = trace_eye(u.data())) != PathFailure::none) return result;
-    if ((result.failure = trace_light(u.data() + layout_->eye_count(t_))) != PathFailure::none) return result;
-    result.failure = connect(tracer_, window_, sensor_point_, eye(), light(), connection_);
+    if ((result.failure = trace_eye(u.data(), path)) != PathFailure::none) return result;
+    if ((result.failure = trace_light(u.data() + layout_->eye_count(u.t), path)) != PathFailure::none) return result;
+    Connection c;
+    result.failure = connect(tracer_, window_, path.eye(), path.light(), c);
     if (result.failure != PathFailure::none) return result;
-    result.raster = t_ == 1 ? connection_.raster : raster_;
-    result.weight = mis_weight(eye(), light(), connection_.junction, Techniques::all);
-    result.contribution = connection_.throughput * result.weight;
+    path.junction = c.junction;
+    path.weight = result.weight = mis_weight(path.eye(), path.light(), c.junction, target_.techniques);
+    result.raster = u.t == 1 ? c.raster : raster_;
+    result.contribution = c.throughput * result.weight;
+    const Spectrum& counted = target_.weighting == Weighting::target ? result.contribution : c.throughput;
     if (std::isfinite(result.contribution.sum()))
-        result.target = scalar(target_, result.contribution);
+        result.target = scalar(target_.function, counted);
     else
         result.failure = PathFailure::non_finite;
     return result;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/lanes.h"
-#include "pathspace/connect.h"
+#include "pathspace/path.h"
 #include "pss/layout.h"
 
 namespace keyhole {
@@ -30,38 +30,47 @@ struct Evaluation {
     double weight = 0;  // w_t
 };
 
-// Maps coordinates to paths. Owns the vertices, so one per thread.
+// What is weighted by w_t: the target, which is then C(x) = w_t f* / p_t [Pantaleoni 2017, equation 14], or only what
+// is splatted, while the target is f* / p_t [equation 12].
+enum class Weighting { target, splat };
+
+// What a chart takes as the target.
+struct ChartTarget {
+    TargetFunction function = TargetFunction::luminance;
+    TechniqueSet techniques = all_techniques;
+    Weighting weighting = Weighting::target;
+};
+
+// Maps coordinates to paths. Has the room for one path, so one per thread.
 class Chart {
   public:
-    Chart(const Scene& scene, const CoordinateLayout& layout, TargetFunction target = TargetFunction::luminance);
+    Chart(const Scene& scene, const CoordinateLayout& layout, const ChartTarget& target = {});
 
-    // Traces T_t(u). k in [1, max_length], t in [1, k+1]; t = 1 with k = 1 has zero contribution by convention.
-    Evaluation evaluate(const PrimarySample& u);
-
-    // The vertices of the last evaluation that did not fail.
-    std::span<const Vertex> eye() const { return {eye_.data(), static_cast<std::size_t>(t_)}; }
-    std::span<const Vertex> light() const { return {light_.data(), static_cast<std::size_t>(s_)}; }
-    const SensorPoint& sensor_point() const { return sensor_point_; }
-    const Junction& junction() const { return connection_.junction; }
+    // Traces T_t(u) into `path`, which has room for max_length + 1 vertices; unspecified after a failure.
+    // k in [1, max_length], t in [1, k+1] of the target's techniques; t = 1 with k = 1 has zero contribution by
+    // convention.
+    Evaluation evaluate(const PrimarySample& u, SampledPath& path);
+    // Into the chart's own path.
+    Evaluation evaluate(const PrimarySample& u) { return evaluate(u, path_); }
+    const SampledPath& path() const { return path_; }
 
     Tracer& tracer() { return tracer_; }
     const RasterWindow& window() const { return window_; }
     const CoordinateLayout& layout() const { return *layout_; }
+    const ChartTarget& target() const { return target_; }
 
   private:
     // `u`: the subpath's coordinates.
-    PathFailure trace_eye(const double* u);
-    PathFailure trace_light(const double* u);
+    PathFailure trace_eye(const double* u, SampledPath& path);
+    PathFailure trace_light(const double* u, SampledPath& path);
 
     Tracer tracer_;
     const CoordinateLayout* layout_;
-    TargetFunction target_;
+    ChartTarget target_;
     RasterWindow window_;
-    std::vector<Vertex> eye_, light_;
-    SensorPoint sensor_point_;
-    Connection connection_;
+    SampledPath path_;
+    Vertex pinhole_;  // x_0, where there is no lens
     Vec2 raster_{0, 0};
-    int t_ = 0, s_ = 0;
 };
 
 }  // namespace keyhole

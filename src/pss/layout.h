@@ -29,7 +29,11 @@ class CoordinateLayout {
     int eye_count(int t) const { return t <= 0 ? 0 : (t == 1 ? lens_ : lens_ + 2 + (t - 2) * block_); }
     int light_count(int s) const { return s <= 0 ? 0 : choice_ + 3 + (s == 1 ? 0 : 2 + (s - 2) * block_); }
 
-    int count(int k, int t) const { return eye_count(t) + light_count(k + 1 - t); }
+    // By technique t; {0, 0}: of all techniques at once, the longest subpaths from both ends.
+    int count(int k, int t) const {
+        return t == 0 ? bundle_eye_count() + light_count(max_length_) : eye_count(t) + light_count(k + 1 - t);
+    }
+    int bundle_eye_count() const { return eye_count(max_length_ + 1); }
     // The largest count of any path.
     int capacity() const {
         int most = 0;

@@ -16,12 +16,14 @@ namespace {
 constexpr double prior_share = 0.05;
 
 struct Worker {
-    Chart chart;
+    std::unique_ptr<Evaluator> evaluator;
     PssState state;
     LargeStep large_step;
 
     Worker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques, const Mix& mix)
-        : chart(scene, layout, mix.target), state(layout), large_step(chart, techniques, mix.lengths.fixed) {}
+        : evaluator(make_evaluator(scene, layout, mix)),
+          state(evaluator->make_state()),
+          large_step(*evaluator, techniques, mix.lengths.fixed) {}
 };
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<Worker>>;
@@ -120,7 +122,7 @@ Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, Tech
         lengths[i] = static_cast<std::uint16_t>(mix.lengths.fixed ? worker.state.u.k : 0);
     });
     for (const std::uint8_t f : finite) result.non_finite += !f;
-    for (const auto& worker : workers) result.rays += worker->chart.tracer().rays();
+    for (const auto& worker : workers) result.rays += worker->evaluator->tracer().rays();
 
     const std::size_t replicates = replicate_count(mix);
     result.groups = make_groups(weights, lengths, mix.lengths, replicates);

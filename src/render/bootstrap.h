@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "chain/largest.h"
 #include "chain/running_mean.h"
-#include "strategies/mix.h"
+#include "strategies/mix_states.h"
 
 namespace keyhole {
 

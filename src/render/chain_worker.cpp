@@ -51,16 +51,17 @@ std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scen
 
 ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
                          const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films)
-    : chart(scene, layout, mix.target),
-      mixture(make_mixture(applicable_strategies(mix, scene), {chart, techniques, mix.lengths})),
+    : evaluator(make_evaluator(scene, layout, mix)),
+      mixture(make_mixture(applicable_strategies(mix, scene),
+                           {*evaluator, dynamic_cast<ChartEvaluator*>(evaluator.get()), techniques, mix.lengths})),
       films(replicate_films ? 0 : groups, MetropolisFilm(scene.film())),
       blocks(groups, std::vector<BlockSums>(replicate_count(mix))),
       largest(groups),
       diagnostics(mixture.size()),
       jumps(mixture.size()),
-      grid_(chart.window()),
+      grid_(evaluator->window()),
       replicate_films_(replicate_films),
-      estimator_(chart, techniques, mix.lengths.fixed) {
+      estimator_(*evaluator, techniques, mix.lengths.fixed) {
     for (const MixStrategy* s : applicable_strategies(mix, scene)) independent_.push_back(s->info->independent);
 }
 
@@ -86,7 +87,7 @@ void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Film& 
 }
 
 Observables ChainWorker::observables(const PssState& state) const {
-    const RasterWindow& window = chart.window();
+    const RasterWindow& window = evaluator->window();
     return {std::log(state.target), (state.raster.x() - window.origin.x()) / window.size.x(),
             (state.raster.y() - window.origin.y()) / window.size.y()};
 }

@@ -8,7 +8,7 @@
 #include "render/block_sums.h"
 #include "render/bootstrap.h"
 #include "render/film.h"
-#include "strategies/mix.h"
+#include "strategies/mix_states.h"
 
 namespace keyhole {
 
@@ -44,6 +44,7 @@ struct FilmSink {
     void splat(const PssState& state, double weight) {
         const PhaseScope phase(Phase::film);
         film.splat(state.raster, state.splat * weight);
+        for (const Splat& splat : state.more) film.splat(splat.raster, splat.value * weight);
     }
 };
 template <class Film>
@@ -54,6 +55,7 @@ struct BlockSink {
     BlockSums& sums;
     void splat(const PssState& state, double weight) {
         sums.add(grid.index(state.raster), luminance(state.splat) * weight);
+        for (const Splat& splat : state.more) sums.add(grid.index(splat.raster), luminance(splat.value) * weight);
     }
 };
 
@@ -68,7 +70,7 @@ class ChainWorker {
 
     void advance(RunningChain& running, std::uint64_t mutations);
 
-    Chart chart;
+    std::unique_ptr<Evaluator> evaluator;
     Mixture<PssState, Rng> mixture;
     std::vector<MetropolisFilm> films;           // by group
     std::vector<std::vector<BlockSums>> blocks;  // by group and replicate

@@ -38,6 +38,9 @@ void warn_of_hindrances(const Mix& mix, const Scene& scene, RenderStatistics& st
     for (const MixStrategy& s : mix.strategies)
         if (const std::string why = s.info->hindrance(scene, mix.lengths); s.weight > 0 && !why.empty())
             statistics.warnings.push_back(fmt::format("strategy '{}' never applies here: {}", s.label, why));
+    if (mix.techniques.light_vertices != LightVertices::any)
+        statistics.warnings.push_back(
+            "only some techniques are in use (techniques.light-vertices): light that no other finds is missing");
 }
 
 // By group and replicate.
@@ -118,7 +121,7 @@ class ChainRun {
     }
 
     void report(const std::vector<const MixStrategy*>& strategies, RenderStatistics& statistics) const {
-        for (const auto& worker : workers_) statistics.rays += worker->chart.tracer().rays();
+        for (const auto& worker : workers_) statistics.rays += worker->evaluator->tracer().rays();
         report_b(statistics);
         report_strategies(diagnostics(), strategies, statistics);
         report_errors(record(), blocks_, statistics);
@@ -216,7 +219,7 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
 
     control.announce("bootstrap", 0);
     const CoordinateLayout layout(scene, mix.lengths.max);
-    TechniqueDistribution techniques(mix.lengths.min, mix.lengths.max);
+    TechniqueDistribution techniques = make_techniques(mix);
     Bootstrap bootstrap = run_bootstrap(scene, layout, techniques, mix);
     statistics.seconds_bootstrap = control.elapsed();
     statistics.rays = bootstrap.rays;

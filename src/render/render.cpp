@@ -38,8 +38,8 @@ void check_memory(const Scene& scene, const RenderSettings& s, int threads) {
     const double of_replicates = s.error_image ? static_cast<double>(groups * replicate_count(s.mix)) : 0;
     const double films = pixels * static_cast<double>(film) * (threads + of_replicates);
     const CoordinateLayout layout(scene, s.mix.lengths.max);
-    const auto coordinates = static_cast<std::size_t>(layout.capacity());
-    const double states = chains ? 2.0 * s.mix.chain_count * static_cast<double>(coordinates * sizeof(double)) : 0;
+    const auto per_state = static_cast<double>(bytes_per_state(layout, s.mix));
+    const double states = chains ? 2.0 * s.mix.chain_count * per_state : 0;
     const std::uint64_t memory = physical_memory_bytes();
     if (memory == 0 || films + states <= static_cast<double>(memory)) return;
     const auto bytes = [](double b) { return format_bytes(static_cast<std::uint64_t>(std::min(b, 1e19))); };
@@ -82,6 +82,8 @@ RenderSettings resolve(const Scene& scene, RenderSettings s) {
     check(mix.lengths.max <= PathLengths::longest, "paths of more than 256 edges are not supported");
     check(mix.chain_count > 0, "the number of chains must be positive");
     check(mix.bootstrap_samples >= 4, "the bootstrap needs at least 4 samples");
+    check(!chains || mix.lengths.max > 1 || mix.techniques.light_vertices != LightVertices::one,
+          "paths of one edge have no technique with one vertex from the light");
     check(chains || !s.error_image, "errors of pixels are estimated with chains only");
     if (!chains) return s;
     Mix applicable = mix;

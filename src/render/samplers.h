@@ -3,39 +3,25 @@
 #pragma once
 
 #include "base/rng.h"
-#include "pathspace/connect.h"
+#include "pathspace/all_connections.h"
 #include "render/film.h"
 
 namespace keyhole {
 
-struct LengthRange {
-    int min = 1, max = 12;  // edges
-    bool contains(int k) const { return k >= min && k <= max; }
-};
-
 class Sampler {
   public:
-    Sampler(const Scene& scene, LengthRange lengths)
-        : tracer_(scene), window_(scene.film()), lengths_(lengths), eye_(lengths.max + 1) {}
     virtual ~Sampler() = default;
 
     // `raster` is uniform over the window (or stratified).
     virtual void sample(const Vec2& raster, Rng& rng, RadianceFilm& film) = 0;
+    virtual const Tracer& tracer() const = 0;
 
-    const Tracer& tracer() const { return tracer_; }
     std::uint64_t non_finite() const { return non_finite_; }
 
   protected:
     // Adds a contribution unless it is NaN or infinite, which is counted.
     void splat(RadianceFilm& film, const Vec2& raster, const Spectrum& contribution);
-    // Traces x_0, x_1, ... and calls visit(t, extension) after each new vertex x_{t-1}, t >= 2.
-    template <class Visit>
-    SensorPoint trace_eye(const Vec2& raster, Rng& rng, Visit&& visit);
 
-    Tracer tracer_;
-    RasterWindow window_;
-    LengthRange lengths_;
-    std::vector<Vertex> eye_;
     std::uint64_t non_finite_ = 0;
 };
 
@@ -43,19 +29,31 @@ class Sampler {
 // from emitters at a point or in one direction by way of delta lobes.
 class PathSampler : public Sampler {
   public:
-    using Sampler::Sampler;
+    PathSampler(const Scene& scene, LengthRange lengths)
+        : tracer_(scene), window_(scene.film()), lengths_(lengths), eye_(lengths.max + 1) {}
     void sample(const Vec2& raster, Rng& rng, RadianceFilm& film) override;
+    const Tracer& tracer() const override { return tracer_; }
+
+  private:
+    // The contributions of the paths that end at, or right after, the eye subpath's last vertex.
+    Spectrum light_at(std::span<const Vertex> eye, Rng& rng);
+    Spectrum connected(std::span<const Vertex> eye, std::span<const Vertex> light);
+
+    Tracer tracer_;
+    RasterWindow window_;
+    LengthRange lengths_;
+    std::vector<Vertex> eye_;
 };
 
 // Bidirectional path tracing, all techniques [Veach 1997, chapter 10].
 class BdptSampler : public Sampler {
   public:
-    BdptSampler(const Scene& scene, LengthRange lengths) : Sampler(scene, lengths), light_(lengths.max + 1) {}
+    BdptSampler(const Scene& scene, LengthRange lengths) : connections_(scene, lengths) {}
     void sample(const Vec2& raster, Rng& rng, RadianceFilm& film) override;
+    const Tracer& tracer() const override { return connections_.tracer(); }
 
   private:
-    int trace_light(Rng& rng);
-    std::vector<Vertex> light_;
+    AllConnections connections_;
 };
 
 }  // namespace keyhole

@@ -31,7 +31,7 @@ class Bench {
     Bench(const Scene& scene, const RenderSettings& settings, int threads)
         : scene_(scene),
           layout_(scene, settings.mix.lengths.max),
-          techniques_(settings.mix.lengths.min, settings.mix.lengths.max),
+          techniques_(make_techniques(settings.mix)),
           threads_(threads),
           arena_(threads),
           recorded_(threads) {
@@ -56,12 +56,12 @@ class Bench {
         std::size_t rays = 0;
         for (int i = 0; i < threads_; ++i) {
             recorded_[i].clear();
-            workers_[i]->chart.tracer().record_into(&recorded_[i]);
+            workers_[i]->evaluator->tracer().record_into(&recorded_[i]);
         }
         advance();
         std::vector<std::unique_ptr<RayReplay>> replays;
         for (int i = 0; i < threads_; ++i) {
-            workers_[i]->chart.tracer().record_into(nullptr);
+            workers_[i]->evaluator->tracer().record_into(nullptr);
             rays += recorded_[i].size();
             replays.push_back(std::make_unique<RayReplay>(scene_, recorded_[i]));
         }

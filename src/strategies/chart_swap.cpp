@@ -2,24 +2,39 @@
 
 namespace keyhole {
 
-Proposal ChartSwap::propose(PssState& x, PssState& y, Rng& rng) const {
-    const int k = x.u.k, t = x.u.t;
-    const int other = techniques_.sample_other(k, t, rng.uniform());
-    const Scene& scene = chart_.tracer().scene();
-    const auto find = [&](int technique, PrimarySample& u) {
-        return invert(scene, chart_.window(), chart_.layout(), path_, technique, u, rng).failure ==
-               InverseFailure::none;
-    };
+bool ChartMove::go_over(PssState& x, int t, PssState& y, Rng& rng) const {
+    if (!x.inverse_exists) x.inverse_exists = charts_.invert(x, x.u.t, own_, rng);
+    if (!x.inverse_exists || !charts_.go_over(x, t, y, rng)) return false;
+    y.inverse_exists = true;
+    return true;
+}
 
-    const double weight = chart_.evaluate(x.u).weight;
-    path_.assign(chart_.eye().begin(), chart_.eye().end());
-    path_.insert(path_.end(), chart_.light().rbegin(), chart_.light().rend());
-    if (!find(other, y.u) || !find(t, unread_)) return Proposal::failed(Failure::inverse_failed);
-    const Evaluation e = chart_.evaluate(y.u);
-    if (e.failure != PathFailure::none || !(deviation(chart_, path_) < largest_deviation))
-        return Proposal::failed(Failure::inverse_failed);
-    y.set(e);
-    return {y.target / x.target * (e.weight / weight) * ratio_of_choices(k, t, other), Failure::none};
+Proposal ChartSwap::propose(PssState& x, PssState& y, Rng& rng) const {
+    if (!charts_.find_technique(x, rng)) return Proposal::failed(Failure::inverse_failed);
+    const int k = x.u.k, t = x.u.t;
+    const std::span<const double> w = charts_.weights(x);
+    const auto q = [&](int i) { return w[i] > 0 ? techniques_.probability_given_length(k, i + 1) : 0; };
+    double possible = 0;
+    for (int i = 0; i <= k; ++i) possible += q(i);
+    const double q_own = q(t - 1);
+    const auto q_other = [&](int i) { return i == t - 1 ? 0 : q(i); };
+    const int other = draw_index(k + 1, possible - q_own, q_other, rng) + 1;
+    if (other == 0) return Proposal::failed(Failure::unchanged);
+    const double q_chosen = q(other - 1);
+    const double ratio = w[other - 1] / w[t - 1] * (q_own * (possible - q_own)) / (q_chosen * (possible - q_chosen));
+    if (!go_over(x, other, y, rng)) return Proposal::failed(Failure::inverse_failed);
+    return {ratio * (y.target / x.target), Failure::none};
+}
+
+Proposal ChartGibbs::propose(PssState& x, PssState& y, Rng& rng) const {
+    if (!charts_.find_technique(x, rng)) return Proposal::failed(Failure::inverse_failed);
+    const std::span<const double> w = charts_.weights(x);
+    const int t = draw_index(
+                      x.u.k + 1, 1, [&](int i) { return w[i]; }, rng) +
+                  1;
+    if (t == x.u.t) return Proposal::failed(Failure::unchanged);
+    if (!go_over(x, t, y, rng)) return Proposal::failed(Failure::inverse_failed);
+    return {1, Failure::none};
 }
 
 }  // namespace keyhole

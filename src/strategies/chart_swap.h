@@ -1,32 +1,47 @@
-// Moves between charts of one path.
+// Moves between the charts of one path, with coordinates from the exact inverse [Bitterli et al. 2017; Pantaleoni
+// 2017]. The re-traced path is what is accepted; it differs from x by rounding.
+//
+// A path that the inverse of t' fails at cannot be left towards t', and one that the inverse of t fails at cannot be
+// left from t, since the way back would be missing (theory, section 4).
 #pragma once
 
-#include <vector>
-
-#include "inverse/inverse.h"
+#include "strategies/chart_evaluator.h"
 #include "strategies/mmlt.h"
 
 namespace keyhole {
 
-// The same path by another technique, with coordinates from the exact inverse [Bitterli et al. 2017; Pantaleoni 2017]:
-//     r = [p_t'(x) / p_t(x)] times the ratio of the choices,
-// with p_t' / p_t = w_t' / w_t. The re-traced path is what is accepted; it differs from x by rounding.
-//
-// A path that the inverse of t' fails at cannot be left towards t', and one that the inverse of t fails at cannot be
-// left from t, since the way back would be missing (theory, section 4).
-class ChartSwap final : public ToOtherTechnique {
+// What both have in common. The states keep their paths.
+class ChartMove : public ToOtherTechnique {
   public:
-    ChartSwap(Chart& chart, const TechniqueDistribution& techniques)
-        : ToOtherTechnique(chart, techniques), unread_(chart.layout()) {
-        path_.reserve(static_cast<std::size_t>(chart.layout().max_length()) + 1);
-    }
-    std::string_view name() const override { return "chart-swap"; }
-    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
+    ChartMove(ChartEvaluator& evaluator, const TechniqueDistribution& techniques)
+        : ToOtherTechnique(evaluator, techniques), charts_(evaluator), own_(evaluator.layout()) {}
+
+  protected:
+    // y becomes x's path by technique t, if there are inverses for both ways.
+    bool go_over(PssState& x, int t, PssState& y, Rng& rng) const;
+
+    ChartEvaluator& charts_;
 
   private:
-    // Room for one proposal: a strategy belongs to one thread.
-    mutable std::vector<Vertex> path_;
-    mutable PrimarySample unread_;  // coordinates of the path by its own technique, which show that there are any
+    mutable PrimarySample own_;  // coordinates of the path by its own technique, which show that there are any
+};
+
+// t' ~ q(t' | k), among the techniques other than t that can make the path; Q is the sum of q over all that can:
+//     r = [p_t'(x) / p_t(x)] [q(t | k) / (Q - q(t' | k))] / [q(t' | k) / (Q - q(t | k))],  p_t' / p_t = w_t' / w_t.
+class ChartSwap final : public ChartMove {
+  public:
+    using ChartMove::ChartMove;
+    std::string_view name() const override { return "chart-swap"; }
+    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
+};
+
+// t' ~ w_t'(x), its conditional distribution, so that r = 1: nothing is ever rejected, but for inverses that fail.
+// Where t' = t, the state stays as it is (Failure::unchanged).
+class ChartGibbs final : public ChartMove {
+  public:
+    using ChartMove::ChartMove;
+    std::string_view name() const override { return "chart-gibbs"; }
+    Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 };
 
 }  // namespace keyhole

@@ -76,6 +76,21 @@ std::vector<MixField> make_fields() {
             P::choice("per-chain", {"free", "fixed"}, "\"fixed\": each chain keeps the length it began with"),
             [](auto& m) -> auto& { return m.lengths.fixed; }),
         field(
+            "techniques",
+            P::choice("light-vertices", {"any", "at-most-one", "one", "none"},
+                      "how many vertices techniques sample from the light; light that only others find is missing"),
+            [](auto& m) -> auto& { return m.techniques.light_vertices; }),
+        field(
+            "techniques",
+            P::choice("per-state", {"one", "all"},
+                      "\"all\": a state is all paths that connecting one eye and one light subpath makes"),
+            [](auto& m) -> auto& { return m.techniques.all_at_once; }),
+        field(
+            "techniques",
+            P::choice("weights", {"target", "splat"},
+                      "where the weights between techniques go: into the target, or only into the splats"),
+            [](auto& m) -> auto& { return m.techniques.weighting; }),
+        field(
             "chains", P::integer("count", 0, 1, most_chains, "number of chains").or_word("auto"),
             [](auto& m) -> auto& { return m.chain_count; }),
         field(
@@ -113,6 +128,24 @@ const Parameter* parameter_of(const MixStrategy& strategy, const std::string& ke
     return nullptr;
 }
 
+std::optional<Contradiction> techniques_contradiction(const Mix& mix) {
+    const TechniqueChoice& choice = mix.techniques;
+    if (choice.all_at_once && mix.lengths.fixed)
+        return Contradiction{"techniques.per-state",
+                             "a state of all techniques has paths of all lengths; it cannot keep one"};
+    if (choice.all_at_once && choice.weighting == Weighting::splat)
+        return Contradiction{"techniques.weights", "with all techniques in a state, the target must be weighted"};
+    for (const MixStrategy& s : mix.strategies) {
+        if (choice.all_at_once && !s.info->all_at_once && s.weight > 0)
+            return Contradiction{"techniques.per-state",
+                                 fmt::format("'{}' moves states of one technique; here each state holds all", s.label)};
+        if (choice.weighting == Weighting::splat && s.info->needs.path && s.weight > 0)
+            return Contradiction{"techniques.weights",
+                                 fmt::format("'{}' moves between techniques by their weights in the target", s.label)};
+    }
+    return {};
+}
+
 std::optional<Contradiction> strategies_contradiction(const Mix& mix) {
     const auto used = [](const MixStrategy& s) { return s.weight > 0; };
     if (mix.strategies.empty())
@@ -141,6 +174,20 @@ std::optional<Contradiction> strategies_contradiction(const Mix& mix) {
 }
 
 }  // namespace
+
+TechniqueSet TechniqueChoice::set() const {
+    switch (light_vertices) {
+        case LightVertices::any:
+            return all_techniques;
+        case LightVertices::at_most_one:
+            return unidirectional_techniques;
+        case LightVertices::one:
+            return {1, 1};
+        case LightVertices::none:
+            return {0, 0};
+    }
+    return all_techniques;
+}
 
 const std::vector<MixField>& mix_fields() {
     static const std::vector<MixField> fields = make_fields();
@@ -181,6 +228,7 @@ std::optional<Contradiction> contradiction(const Mix& mix) {
     if (mix.lengths.max > 0 && mix.lengths.max < mix.lengths.min)
         return Contradiction{"lengths.max",
                              fmt::format("'max' = {} is below 'min' = {}", mix.lengths.max, mix.lengths.min)};
+    if (const auto wrong = techniques_contradiction(mix)) return wrong;
     return strategies_contradiction(mix);
 }
 

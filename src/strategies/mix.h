@@ -15,6 +15,19 @@ namespace keyhole {
 // What happens to a proposal without contribution (theory, section 5). Only `off` is there so far.
 enum class Rectification { off, exclude, walk_on, retry };
 
+// How many vertices from the light the techniques in use may have.
+enum class LightVertices { any, at_most_one, one, none };
+
+// Which techniques there are and what a state holds of them.
+struct TechniqueChoice {
+    LightVertices light_vertices = LightVertices::any;
+    bool all_at_once = false;  // a state is a bundle of paths by all techniques [Kelemen et al. 2002], not one path
+    Weighting weighting = Weighting::target;
+
+    TechniqueSet set() const;
+    bool operator==(const TechniqueChoice&) const = default;
+};
+
 struct MixStrategy {
     const StrategyInfo* info = nullptr;  // an entry of the registry
     std::string label;                   // in statistics and --set; by default the strategy's name
@@ -31,6 +44,7 @@ struct Mix {
     Rectification rectification = Rectification::off;
     std::uint64_t seed = 0;  // < 2^63, as TOML has no greater integers
     PathLengths lengths;
+    TechniqueChoice techniques;
     int chain_count = 0;
     std::int64_t chain_length = 0;  // mutations of each chain, where the render is given neither a time nor a number
     std::int64_t bootstrap_samples = 0;

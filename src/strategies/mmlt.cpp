@@ -16,6 +16,20 @@ void keep_or_draw(const double* x, int old_n, double* y, int n, Rng& rng) {
     draw_uniform(y + kept, n - kept, rng);
 }
 
+// A move from coordinates of x to coordinates of y.
+bool start_move(Evaluator& evaluator, PssState& x, Rng& rng) {
+    return evaluator.find_coordinates(x, rng) && evaluator.may_move_in_chart(x, rng);
+}
+// Evaluates y at its coordinates; the proposal's ratio is C(y) / C(x) times `factor`.
+Proposal finish_move(Evaluator& evaluator, const PssState& x, PssState& y, double factor, Rng& rng) {
+    const PathFailure failure = evaluator.evaluate(y);
+    if (failure != PathFailure::none) return Proposal::failed(to_failure(failure));
+    if (!evaluator.may_move_in_chart(y, rng)) return Proposal::failed(Failure::inverse_failed);
+    return {y.target / x.target * factor, Failure::none};
+}
+
+}  // namespace
+
 Failure to_failure(PathFailure failure) {
     switch (failure) {
         case PathFailure::none:
@@ -36,27 +50,17 @@ Failure to_failure(PathFailure failure) {
     return Failure::other;
 }
 
-// Evaluates y at its coordinates; the proposal's ratio is C(y) / C(x) times `factor`.
-Proposal evaluate(Chart& chart, const PssState& x, PssState& y, double factor) {
-    const Evaluation e = chart.evaluate(y.u);
-    y.set(e);
-    return {y.target / x.target * factor, to_failure(e.failure)};
-}
-
-}  // namespace
-
 PathFailure LargeStep::draw(PssState& y, Rng& rng) const { return draw(y, techniques_.sample(rng.uniform()), rng); }
 
 PathFailure LargeStep::draw(PssState& y, Technique technique, Rng& rng) const {
     y.u.k = technique.k;
     y.u.t = technique.t;
-    draw_uniform(y.u.data(), chart_.layout().count(y.u.k, y.u.t), rng);
-    const Evaluation e = chart_.evaluate(y.u);
-    y.set(e);
-    return e.failure;
+    draw_uniform(y.u.data(), evaluator_.layout().count(y.u.k, y.u.t), rng);
+    return evaluator_.evaluate(y);
 }
 
 Proposal LargeStep::propose(PssState& x, PssState& y, Rng& rng) const {
+    if (!evaluator_.find_technique(x, rng)) return Proposal::failed(Failure::inverse_failed);
     const int k = x.u.k;
     const PathFailure failure =
         fixed_length_ ? draw(y, {k, techniques_.sample_given_length(k, rng.uniform())}, rng) : draw(y, rng);
@@ -65,22 +69,24 @@ Proposal LargeStep::propose(PssState& x, PssState& y, Rng& rng) const {
 
 template <class Kernel>
 Proposal SmallStep<Kernel>::propose(PssState& x, PssState& y, Rng& rng) const {
+    if (!start_move(evaluator_, x, rng)) return Proposal::failed(Failure::inverse_failed);
     y.u.k = x.u.k;
     y.u.t = x.u.t;
-    kernel_(x.u.data(), y.u.data(), chart_.layout().count(y.u.k, y.u.t), rng);
-    return evaluate(chart_, x, y, 1);
+    kernel_(x.u.data(), y.u.data(), evaluator_.layout().count(y.u.k, y.u.t), rng);
+    return finish_move(evaluator_, x, y, 1, rng);
 }
 
 Proposal TechniqueChange::propose(PssState& x, PssState& y, Rng& rng) const {
+    if (!start_move(evaluator_, x, rng)) return Proposal::failed(Failure::inverse_failed);
     const int k = x.u.k, t = x.u.t;
     y.u.k = k;
     y.u.t = techniques_.sample_other(k, t, rng.uniform());
-    const CoordinateLayout& layout = chart_.layout();
+    const CoordinateLayout& layout = evaluator_.layout();
     const int eye_old = layout.eye_count(t), eye_new = layout.eye_count(y.u.t);
     keep_or_draw(x.u.data(), eye_old, y.u.data(), eye_new, rng);
     keep_or_draw(x.u.data() + eye_old, layout.light_count(x.u.s()),  //
                  y.u.data() + eye_new, layout.light_count(y.u.s()), rng);
-    return evaluate(chart_, x, y, ratio_of_choices(k, t, y.u.t));
+    return finish_move(evaluator_, x, y, ratio_of_choices(k, t, y.u.t), rng);
 }
 
 template class SmallStep<KelemenKernel>;

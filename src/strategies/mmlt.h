@@ -5,12 +5,14 @@
 #include "base/rng.h"
 #include "chain/strategy.h"
 #include "pss/kernels.h"
-#include "strategies/pss_state.h"
+#include "strategies/evaluator.h"
 #include "strategies/technique_distribution.h"
 
 namespace keyhole {
 
 using PssStrategy = Strategy<PssState, Rng>;
+
+Failure to_failure(PathFailure failure);
 
 // k, t ~ P(k, t) and u uniform. The density of the proposal is P(k, t), so
 //     r = [C(y) / P(k_y, t_y)] / [C(x) / P(k_x, t_x)].
@@ -20,8 +22,8 @@ using PssStrategy = Strategy<PssState, Rng>;
 // that is then one of b_k, the part of b that paths of length k carry.
 class LargeStep final : public PssStrategy {
   public:
-    LargeStep(Chart& chart, const TechniqueDistribution& techniques, bool fixed_length = false)
-        : chart_(chart), techniques_(techniques), fixed_length_(fixed_length) {}
+    LargeStep(Evaluator& evaluator, const TechniqueDistribution& techniques, bool fixed_length = false)
+        : evaluator_(evaluator), techniques_(techniques), fixed_length_(fixed_length) {}
     std::string_view name() const override { return "large-step"; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
@@ -36,7 +38,7 @@ class LargeStep final : public PssStrategy {
   private:
     PathFailure draw(PssState& y, Technique technique, Rng& rng) const;
 
-    Chart& chart_;
+    Evaluator& evaluator_;
     const TechniqueDistribution& techniques_;
     bool fixed_length_;
 };
@@ -45,21 +47,22 @@ class LargeStep final : public PssStrategy {
 template <class Kernel>
 class SmallStep final : public PssStrategy {
   public:
-    SmallStep(Chart& chart, const Kernel& kernel) : chart_(chart), kernel_(kernel) {}
+    SmallStep(Evaluator& evaluator, const Kernel& kernel) : evaluator_(evaluator), kernel_(kernel) {}
     std::string_view name() const override { return "small-step"; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
   private:
-    Chart& chart_;
+    Evaluator& evaluator_;
     Kernel kernel_;
 };
 
 // What moves to another technique t' != t of the same length have in common: t' is drawn in proportion to q(t' | k).
 class ToOtherTechnique : public PssStrategy {
   public:
-    ToOtherTechnique(Chart& chart, const TechniqueDistribution& techniques) : chart_(chart), techniques_(techniques) {}
+    ToOtherTechnique(Evaluator& evaluator, const TechniqueDistribution& techniques)
+        : evaluator_(evaluator), techniques_(techniques) {}
     double suitability(const PssState& x) const final { return techniques_.has_choice(x.u.k) ? 1 : 0; }
-    bool suitability_varies() const final { return techniques_.techniques().front().k == 1; }
+    bool suitability_varies() const final { return !techniques_.has_choice_everywhere(); }
 
   protected:
     // What the choice contributes to the ratio: [q(t | k) / (1 - q(t' | k))] / [q(t' | k) / (1 - q(t | k))].
@@ -69,7 +72,7 @@ class ToOtherTechnique : public PssStrategy {
         return q * (1 - q) / (q_other * (1 - q_other));
     }
 
-    Chart& chart_;
+    Evaluator& evaluator_;
     const TechniqueDistribution& techniques_;
 };
 

@@ -17,15 +17,16 @@ StrategyInfo large_step() {
     StrategyInfo info;
     info.name = "large-step";
     info.description = "A path that is independent of the current one: length, technique and all coordinates anew";
-    info.ergodic = info.independent = true;
+    info.ergodic = info.independent = info.all_at_once = true;
     info.hindrance = applies_always;
     info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<LargeStep>(c.chart, c.techniques, c.lengths.fixed);
+        return std::make_unique<LargeStep>(c.evaluator, c.techniques, c.lengths.fixed);
     };
     return info;
 }
 
-StrategyInfo small_step() {
+// The parameters of a symmetric step, and how to make a strategy Move<Kernel>(args..., kernel) with it.
+StrategyInfo with_kernel() {
     constexpr double half = 0.5;  // no point of the torus is farther
     const auto step = [&](const char* name, double fallback, const char* kernel, const char* description) {
         return Parameter::number(name, fallback, 0, half, description)
@@ -34,8 +35,6 @@ StrategyInfo small_step() {
             .only_with("kernel", kernel);
     };
     StrategyInfo info;
-    info.name = "small-step";
-    info.description = "Moves every coordinate of the current technique by a small symmetric step";
     info.parameters = {Parameter::choice("kernel", {"kelemen", "gaussian"}, "distribution of the steps"),
                        step("s1", 1.0 / 1024, "kelemen", "smallest step"),
                        step("s2", 1.0 / 64, "kelemen", "largest step; their logarithms are uniform"),
@@ -45,15 +44,36 @@ StrategyInfo small_step() {
         const double s1 = number(v, "s1"), s2 = number(v, "s2");
         return s1 > s2 ? fmt::format("s1 = {} is above s2 = {}", s1, s2) : "";
     };
-    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        if (std::get<std::string>(v.at("kernel")) == "gaussian")
-            return std::make_unique<SmallStep<GaussianKernel>>(c.chart, GaussianKernel(number(v, "sigma")));
-        return std::make_unique<SmallStep<KelemenKernel>>(c.chart, KelemenKernel(number(v, "s1"), number(v, "s2")));
+    return info;
+}
+
+template <template <class> class Move, class... Args>
+std::unique_ptr<PssStrategy> make_with_kernel(const Values& v, Args&... args) {
+    if (std::get<std::string>(v.at("kernel")) == "gaussian")
+        return std::make_unique<Move<GaussianKernel>>(args..., GaussianKernel(number(v, "sigma")));
+    return std::make_unique<Move<KelemenKernel>>(args..., KelemenKernel(number(v, "s1"), number(v, "s2")));
+}
+
+StrategyInfo small_step() {
+    StrategyInfo info = with_kernel();
+    info.name = "small-step";
+    info.description = "Moves every coordinate of the current technique by a small symmetric step";
+    info.all_at_once = true;
+    info.make = [](const StrategyContext& c, const Values& v) { return make_with_kernel<SmallStep>(v, c.evaluator); };
+    return info;
+}
+
+StrategyInfo inverse_small_step() {
+    StrategyInfo info = with_kernel();
+    info.name = "inverse-small-step";
+    info.description = "Moves a path by a small step in the coordinates of a technique drawn for it, from the inverse";
+    info.needs = {.path = true, .forgets = true};
+    info.make = [](const StrategyContext& c, const Values& v) {
+        return make_with_kernel<InverseSmallStep>(v, *c.charts, c.techniques);
     };
     return info;
 }
 
-template <class Move>
 StrategyInfo to_other_technique(const char* name, const char* description) {
     StrategyInfo info;
     info.name = name;
@@ -61,8 +81,25 @@ StrategyInfo to_other_technique(const char* name, const char* description) {
     info.hindrance = [](const Scene&, const PathLengths& lengths) {
         return std::string(lengths.max > 1 ? "" : "paths of one edge have one technique only");
     };
+    return info;
+}
+
+StrategyInfo technique_change() {
+    StrategyInfo info = to_other_technique(
+        "technique-change",
+        "Keeps the coordinates and reads them by another technique of the same length: another path");
     info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<Move>(c.chart, c.techniques);
+        return std::make_unique<TechniqueChange>(c.evaluator, c.techniques);
+    };
+    return info;
+}
+
+template <class Move>
+StrategyInfo chart_move(const char* name, const char* description) {
+    StrategyInfo info = to_other_technique(name, description);
+    info.needs = {.path = true};
+    info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<Move>(*c.charts, c.techniques);
     };
     return info;
 }
@@ -71,13 +108,15 @@ StrategyInfo to_other_technique(const char* name, const char* description) {
 
 const std::vector<StrategyInfo>& strategy_registry() {
     static const std::vector<StrategyInfo> registry = {
-        large_step(), small_step(),
-        to_other_technique<TechniqueChange>(
-            "technique-change",
-            "Keeps the coordinates and reads them by another technique of the same length: another path"),
-        to_other_technique<ChartSwap>(
-            "chart-swap",
-            "Keeps the path and goes over to another technique, with coordinates from the exact inverse")};
+        large_step(),
+        small_step(),
+        technique_change(),
+        chart_move<ChartSwap>(
+            "chart-swap", "Keeps the path and goes over to another technique, with coordinates from the exact inverse"),
+        chart_move<ChartGibbs>(
+            "chart-gibbs",
+            "As chart-swap, but draws the technique from its distribution given the path: never rejected"),
+        inverse_small_step()};
     return registry;
 }
 

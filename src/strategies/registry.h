@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "strategies/chart_swap.h"
+#include "strategies/inverse_small_step.h"
 #include "strategies/parameter.h"
 
 namespace keyhole {
@@ -23,7 +23,8 @@ struct PathLengths {
 
 // What a strategy is made from, for one thread. Must outlive it.
 struct StrategyContext {
-    Chart& chart;
+    Evaluator& evaluator;
+    ChartEvaluator* charts;  // the same, or null where states are not of one technique each
     const TechniqueDistribution& techniques;
     PathLengths lengths;  // resolved: max > 0
 };
@@ -35,6 +36,8 @@ struct StrategyInfo {
 
     bool ergodic = false;  // from every path, it alone can reach every path (of the chain's length, where it is fixed)
     bool independent = false;  // its proposals do not depend on the state, and are estimates of b
+    bool all_at_once = false;  // also moves states of all techniques at once
+    StateNeeds needs;
 
     // Why it can never move a chain in this scene, among these lengths (resolved); empty: it can.
     std::string (*hindrance)(const Scene&, const PathLengths&);

@@ -5,24 +5,37 @@
 
 namespace keyhole {
 
-TechniqueDistribution::TechniqueDistribution(int min_length, int max_length) : first_(max_length + 2, 0) {
+TechniqueDistribution::TechniqueDistribution(int min_length, int max_length, TechniqueSet set)
+    : first_(max_length + 2, 0), choices_(max_length + 1, 0) {
+    const auto in_set = [&](const Technique& technique) { return set.holds(technique.k + 1 - technique.t); };
+    double lengths = 0;
     for (int k = min_length; k <= max_length; ++k) {
         first_[k] = static_cast<int>(techniques_.size());
-        if (k == 1)
-            techniques_.push_back({1, 2});
-        else
-            for (int t = 1; t <= k + 1; ++t) techniques_.push_back({k, t});
+        for (int t = k == 1 ? 2 : 1; t <= (k == 1 ? 2 : k + 1); ++t) {
+            techniques_.push_back({k, t});
+            choices_[k] += in_set({k, t});
+        }
+        if (choices_[k] > 0) lengths += 1.0 / k;
+        if (choices_[k] == 1) has_choice_everywhere_ = false;
     }
     first_[max_length + 1] = static_cast<int>(techniques_.size());
-    double lengths = 0;
-    for (int k = min_length; k <= max_length; ++k) lengths += 1.0 / k;
-    for (const Technique& technique : techniques_) {
-        const int k = technique.k;
-        prior_.push_back(1 / (lengths * k * (first_[k + 1] - first_[k])));
-    }
+    for (const Technique& technique : techniques_)
+        prior_.push_back(in_set(technique) ? 1 / (lengths * technique.k * choices_[technique.k]) : 0);
     p_ = prior_;
     length_p_.assign(max_length + 1, 0.0);
     accumulate();
+}
+
+TechniqueDistribution TechniqueDistribution::all_at_once() {
+    TechniqueDistribution one;
+    one.techniques_ = {{0, 0}};
+    one.first_ = {1, 1};  // index(0, 0) is 0
+    one.choices_ = {1};
+    one.has_choice_everywhere_ = false;
+    one.prior_ = one.p_ = {1};
+    one.length_p_ = {1};
+    one.accumulate();
+    return one;
 }
 
 void TechniqueDistribution::fit(const std::vector<double>& energies, double prior_share) {
@@ -54,9 +67,10 @@ int TechniqueDistribution::sample_other(int k, int t, double u) const {
     double left = u * (length_p_[k] - probability(k, t));
     int chosen = 0;
     for (int other = 1; other <= k + 1; ++other) {
-        if (other == t) continue;
+        const double p = probability(k, other);
+        if (other == t || !(p > 0)) continue;
         chosen = other;
-        left -= probability(k, other);
+        left -= p;
         if (left < 0) break;
     }
     return chosen;

@@ -4,19 +4,40 @@
 
 #include <vector>
 
+#include "pathspace/connect.h"
+
 namespace keyhole {
 
+// The technique t of paths with k edges; {0, 0} stands for all techniques of all lengths at once.
 struct Technique {
     int k = 0, t = 0;
 };
 
+// One of the indices i < count, drawn in proportion to weight(i) >= 0, which sum to `sum`. -1 if all are zero.
+template <class Weight, class Random>
+int draw_index(int count, double sum, const Weight& weight, Random& random) {
+    double left = random.uniform() * sum;
+    int chosen = -1;  // rounding may leave `left` just above zero at the end
+    for (int i = 0; i < count; ++i) {
+        const double w = weight(i);
+        if (!(w > 0)) continue;
+        chosen = i;
+        if ((left -= w) < 0) break;
+    }
+    return chosen;
+}
+
 class TechniqueDistribution {
   public:
-    // The prior over all techniques of lengths min_length .. max_length (k = 1 has the one technique t = 2): as paths of
-    // k edges take a time in proportion to k, P(k) is in proportion to 1 / k and every length gets the same time, shared
-    // evenly by its techniques. Short paths carry most light, and light that is seen directly may cover few pixels: with
-    // techniques drawn evenly one of thousands, where long paths are allowed, it would be missed.
-    TechniqueDistribution(int min_length, int max_length);
+    // The prior over all techniques of lengths min_length .. max_length (k = 1 has the one technique t = 2): as paths
+    // of k edges take a time in proportion to k, P(k) is in proportion to 1 / k and every length gets the same time,
+    // shared evenly by its techniques. Short paths carry most light, and light that is seen directly may cover few
+    // pixels: with techniques drawn evenly one of thousands, where long paths are allowed, it would be missed.
+    //
+    // Techniques outside of the set have probability zero.
+    TechniqueDistribution(int min_length, int max_length, TechniqueSet set = all_techniques);
+    // The one technique {0, 0}.
+    static TechniqueDistribution all_at_once();
 
     // In proportion to `energies` (one per techniques()), mixed with a share of the prior so that every technique stays
     // reachable. The prior alone if all energies are zero.
@@ -32,16 +53,20 @@ class TechniqueDistribution {
     int sample_given_length(int k, double u) const;
     int sample_other(int k, int t, double u) const;
     double probability_given_length(int k, int t) const { return p_[index(k, t)] / length_p_[k]; }
-    bool has_choice(int k) const { return k > 1; }
+    bool has_choice(int k) const { return choices_[k] > 1; }
+    bool has_choice_everywhere() const { return has_choice_everywhere_; }
 
     // Position in techniques().
     int index(int k, int t) const { return first_[k] + (k == 1 ? 0 : t - 1); }
 
   private:
+    TechniqueDistribution() = default;
     void accumulate();
 
     std::vector<Technique> techniques_;
-    std::vector<int> first_;  // by k; first_[k + 1] ends k's range
+    std::vector<int> first_;    // by k; first_[k + 1] ends k's range
+    std::vector<int> choices_;  // by k: techniques of the set
+    bool has_choice_everywhere_ = true;
     std::vector<double> prior_, p_, cumulative_, length_p_;
 };
 

@@ -29,7 +29,7 @@ class Inverses : public testing::TestWithParam<TransportCase> {
             const Evaluation e = chart.evaluate(u);
             if (e.failure != PathFailure::none || !(e.target > 0)) continue;
             --wanted;
-            body(u, join(chart.eye(), chart.light()), e);
+            body(u, join(chart.path().eye(), chart.path().light()), e);
         }
         EXPECT_LE(wanted, 0) << "too few paths with light";
     }
@@ -62,7 +62,7 @@ TEST_P(Inverses, EveryTechniqueGivesThePathBack) {
                 continue;
             }
             const Evaluation again = chart.evaluate(other);
-            const double off = again.failure == PathFailure::none ? deviation(chart, path.x) : 1e300;
+            const double off = again.failure == PathFailure::none ? deviation(chart.path(), path.x) : 1e300;
             if (!(off < largest_deviation)) {
                 ++failures[InverseFailure::retrace];
                 continue;

@@ -28,7 +28,7 @@ int for_sampled_paths(const Scene& scene, int tries, const Body& body) {
         EXPECT_NE(e.failure, PathFailure::non_finite);
         if (e.failure != PathFailure::none) continue;
         ++found;
-        const Path path = join(chart.eye(), chart.light());
+        const Path path = join(chart.path().eye(), chart.path().light());
         body(u, path, densities(scene, chart.window(), path), e);
     }
     return found;

@@ -22,12 +22,12 @@ TEST_P(ChartSwaps, KeepTheShareOfEachTechnique) {
     constexpr int max_length = 4, paths = 40000, swaps = 3, techniques_in_all = 12;
     const auto scene = own_scene(GetParam(), 16, 16);
     const CoordinateLayout layout(*scene, max_length);
-    Chart chart(*scene, layout);
+    ChartEvaluator evaluator(*scene, layout, {}, {.path = true});
     const TechniqueDistribution techniques(2, max_length);
-    const LargeStep large(chart, techniques);
-    const ChartSwap swap(chart, techniques);
+    const LargeStep large(evaluator, techniques);
+    const ChartSwap swap(evaluator, techniques);
     Rng rng(3, 1);
-    PssState x(layout), y(layout);
+    PssState x = evaluator.make_state(), y = evaluator.make_state();
     std::map<std::pair<int, int>, std::pair<double, double>> changes;  // by k and t: sum, sum of squares
     int moved = 0;
     for (int i = 0; i < paths; ++i) {

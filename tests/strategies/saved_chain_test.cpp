@@ -33,13 +33,13 @@ Saved save(const Chain<PssState>& chain, const Rng& rng, const CoordinateLayout&
 }
 
 // Coordinates that were not saved are filled with numbers that any use of them would show.
-Chain<PssState> restore(const Saved& saved, Chart& chart) {
-    PssState state(chart.layout());
+Chain<PssState> restore(const Saved& saved, Evaluator& evaluator) {
+    PssState state(evaluator.layout());
     state.u.k = saved.k;
     state.u.t = saved.t;
     std::fill(state.u.coordinates.begin(), state.u.coordinates.end(), -1e30);
     std::copy(saved.coordinates.begin(), saved.coordinates.end(), state.u.data());
-    state.set(chart.evaluate(state.u));
+    evaluator.evaluate(state);
     return Chain<PssState>(state, saved.held);
 }
 
@@ -58,7 +58,7 @@ TEST_P(SavedChain, ContinuesBitForBit) {
         for (int i = 0; i < 137; ++i) chain.step(mmlt.mixture, rng, before, diagnostics);
 
         const Saved saved = save(chain, rng, mmlt.layout);
-        Chain<PssState> restored = restore(saved, mmlt.chart);
+        Chain<PssState> restored = restore(saved, mmlt.evaluator);
         Rng restored_rng(saved.random);
         Diagnostics restored_diagnostics = diagnostics;
         ASSERT_EQ(restored.current().target, chain.current().target);

@@ -1,0 +1,48 @@
+// States of one path by one technique.
+#pragma once
+
+#include "inverse/inverse.h"
+#include "strategies/evaluator.h"
+
+namespace keyhole {
+
+// What a mix's strategies ask of states beside their coordinates.
+struct StateNeeds {
+    bool path = false;     // the vertices stay with the state
+    bool forgets = false;  // some move leaves the state's coordinates unknown
+};
+
+class ChartEvaluator final : public Evaluator {
+  public:
+    ChartEvaluator(const Scene& scene, const CoordinateLayout& layout, const ChartTarget& target = {},
+                   StateNeeds needs = {});
+
+    PssState make_state() const override;
+    PathFailure evaluate(PssState& y) override;
+    bool find_technique(PssState& x, Rng& rng) override;
+    bool find_coordinates(PssState& x, Rng& rng) override;
+    bool may_move_in_chart(PssState& x, Rng& rng) override;
+
+    const CoordinateLayout& layout() const override { return chart_.layout(); }
+    const RasterWindow& window() const override { return chart_.window(); }
+    Tracer& tracer() override { return chart_.tracer(); }
+    Chart& chart() { return chart_; }
+
+    // Of states that keep their paths:
+
+    // w_t(x) of all techniques, at t - 1. Valid until the next call.
+    std::span<const double> weights(const PssState& x);
+    // Coordinates of x's path by technique t.
+    bool invert(const PssState& x, int t, PrimarySample& u, Rng& rng);
+    // y becomes x's path by technique t, traced again. False where there is no inverse or it does not lead back.
+    bool go_over(const PssState& x, int t, PssState& y, Rng& rng);
+
+  private:
+    Chart chart_;
+    StateNeeds needs_;
+    std::vector<double> weights_;
+    PrimarySample unread_;
+    SampledPath again_;  // room to trace a path for a second time
+};
+
+}  // namespace keyhole

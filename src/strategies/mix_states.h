@@ -1,0 +1,19 @@
+// What the states of a mix are made by.
+#pragma once
+
+#include <memory>
+
+#include "strategies/mix.h"
+
+namespace keyhole {
+
+// `mix` is resolved. Before any fit.
+TechniqueDistribution make_techniques(const Mix& mix);
+
+// For one thread; `layout` is of the scene and the mix's longest paths, and must outlive it.
+std::unique_ptr<Evaluator> make_evaluator(const Scene& scene, const CoordinateLayout& layout, const Mix& mix);
+
+// Of one state, without the state itself.
+std::size_t bytes_per_state(const CoordinateLayout& layout, const Mix& mix);
+
+}  // namespace keyhole
