@@ -47,6 +47,17 @@ class Chain {
         return slots_[outcome.accepted ? 1 - current_ : current_];
     }
 
+    // A move from outside of the mixture, between steps: it is written to `spare()`. Such a move has no
+    // weight of its own.
+    State& current() { return slots_[current_]; }
+    State& spare() { return slots_[1 - current_]; }
+    template <Sink<State> Film>
+    void leave_for_spare(Film& film) {
+        splat_held(film);
+        current_ = 1 - current_;
+        held_ = 0;
+    }
+
     // One step. Every step has the weight one: with the acceptance probability a, the current state gets 1 - a and the
     // proposed one a, whichever becomes the next. The current state's weight is held until it is left, so
     // that at most one state is splatted in a step.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 namespace keyhole {
@@ -26,7 +27,8 @@ enum class Failure : std::uint8_t {
 
 inline constexpr std::array<std::string_view, 11> failure_names = {
     "none",         "eye subpath short", "light subpath short", "occluded",   "zero bsdf",
-    "outside film", "outside support",   "inverse failed",      "non-finite", "unchanged", "other"};
+    "outside film", "outside support",   "inverse failed",      "non-finite", "unchanged",
+    "other"};
 inline constexpr std::size_t failure_kinds = failure_names.size();
 
 inline std::string_view failure_name(Failure failure) { return failure_names[static_cast<std::size_t>(failure)]; }
@@ -39,5 +41,14 @@ struct Proposal {
 
     static Proposal failed(Failure failure) { return {0, failure}; }
 };
+
+// The probability of accepting a proposal. A ratio that is negative, infinite or NaN makes it one that failed.
+inline double acceptance(Proposal& proposal) {
+    if (proposal.failure != Failure::none) return 0;
+    if (proposal.ratio >= 0 && proposal.ratio <= std::numeric_limits<double>::max())
+        return proposal.ratio < 1 ? proposal.ratio : 1;
+    proposal.failure = Failure::non_finite;
+    return 0;
+}
 
 }  // namespace keyhole

@@ -13,7 +13,7 @@
 namespace keyhole {
 
 // Streams of random numbers, so that no two uses share one.
-enum class StreamUse : std::uint64_t { chain = 0, energies = 1, seeds = 2, resampling = 3 };
+enum class StreamUse : std::uint64_t { chain = 0, energies = 1, seeds = 2, resampling = 3, exchange = 4 };
 inline std::uint64_t stream(StreamUse use, std::uint64_t index) {
     return (static_cast<std::uint64_t>(use) << 60) | index;
 }

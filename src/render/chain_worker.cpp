@@ -63,19 +63,28 @@ ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, con
       replicate_films_(replicate_films),
       estimator_(*evaluator, techniques, mix.lengths.fixed) {
     for (const MixStrategy* s : applicable_strategies(mix, scene)) independent_.push_back(s->info->independent);
+    if (mix.exchange_every > 0) exchange_.emplace(dynamic_cast<ChartEvaluator&>(*evaluator));
+}
+
+template <class Body>
+void ChainWorker::with_sink(const RunningChain& running, const Body& body) {
+    BlockSink blocks_sink{grid_, blocks[running.group][running.replicate]};
+    if (replicate_films_) {
+        PairSink<SharedMetropolisFilm> sink{{(*replicate_films_)[running.group][running.replicate]}, blocks_sink};
+        body(sink);
+    } else {
+        PairSink<MetropolisFilm> sink{{films[running.group]}, blocks_sink};
+        body(sink);
+    }
 }
 
 void ChainWorker::advance(RunningChain& running, std::uint64_t mutations) {
     const WorkScope work(Phase::other);
-    if (replicate_films_)
-        advance(running, mutations, (*replicate_films_)[running.group][running.replicate]);
-    else
-        advance(running, mutations, films[running.group]);
+    with_sink(running, [&](auto& sink) { advance(running, mutations, sink); });
 }
 
-template <class Film>
-void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Film& film) {
-    PairSink<Film> sink{{film}, {grid_, blocks[running.group][running.replicate]}};
+template <class Sink>
+void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Sink& sink) {
     for (std::uint64_t i = 0; i < mutations; ++i) {
         const StepOutcome outcome = running.chain.step(mixture, running.rng, sink, diagnostics);
         if (++running.steps % observed_every == 0) observe(running, outcome);
@@ -84,6 +93,19 @@ void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Film& 
         running.b.add(b);
         largest[running.group].add(b);
     }
+}
+
+void ChainWorker::exchange(RunningChain& a, RunningChain& b, Rng& rng) {
+    const WorkScope work(Phase::other);
+    PssState &x = a.chain.current(), &y = b.chain.current();
+    if (x.u.k != y.u.k || !evaluator->find_technique(x, rng) || !evaluator->find_technique(y, rng)) return;
+    if (x.u.t == y.u.t) return;
+    Proposal proposal = exchange_->propose(x, y, a.chain.spare(), b.chain.spare(), rng);
+    const double probability = acceptance(proposal);
+    const bool accepted = probability >= 1 || (probability > 0 && rng.uniform() < probability);
+    exchanges.add(proposal.failure, probability, accepted);
+    if (!accepted) return;
+    for (RunningChain* chain : {&a, &b}) with_sink(*chain, [&](auto& sink) { chain->chain.leave_for_spare(sink); });
 }
 
 Observables ChainWorker::observables(const PssState& state) const {

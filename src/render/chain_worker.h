@@ -8,6 +8,7 @@
 #include "render/block_sums.h"
 #include "render/bootstrap.h"
 #include "render/film.h"
+#include "strategies/chart_exchange.h"
 #include "strategies/mix_states.h"
 
 namespace keyhole {
@@ -70,17 +71,25 @@ class ChainWorker {
 
     void advance(RunningChain& running, std::uint64_t mutations);
 
+    // Proposes that two chains of one group and replicate exchange their paths; does nothing where they have not the
+    // same length and different techniques. Only for mixes that exchange.
+    void exchange(RunningChain& a, RunningChain& b, Rng& rng);
+
     std::unique_ptr<Evaluator> evaluator;
     Mixture<PssState, Rng> mixture;
     std::vector<MetropolisFilm> films;           // by group
     std::vector<std::vector<BlockSums>> blocks;  // by group and replicate
     std::vector<Largest<heaviest>> largest;      // by group: estimates of b by independent proposals
     Diagnostics diagnostics;
+    StrategyCounts exchanges;
     std::vector<ObservableJumps> jumps;  // by strategy, of every sixteenth proposal
 
   private:
-    template <class Film>
-    void advance(RunningChain& running, std::uint64_t mutations, Film& film);
+    // Calls body(sink) with what takes the chain's splats.
+    template <class Body>
+    void with_sink(const RunningChain& running, const Body& body);
+    template <class Sink>
+    void advance(RunningChain& running, std::uint64_t mutations, Sink& sink);
     void observe(RunningChain& running, const StepOutcome& outcome);
     Observables observables(const PssState& state) const;
 
@@ -88,6 +97,7 @@ class ChainWorker {
     ReplicateFilms* replicate_films_;
     std::vector<char> independent_;  // of each strategy: whether its proposals estimate b
     LargeStep estimator_;
+    std::optional<ChartExchange> exchange_;
 };
 
 }  // namespace keyhole

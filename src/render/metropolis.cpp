@@ -9,29 +9,26 @@
 
 #include "base/parallel.h"
 #include "render/error_statistics.h"
+#include "render/exchanges.h"
 #include "render/run_control.h"
 
 namespace keyhole {
 namespace {
 
-void report_strategies(const Diagnostics& total, const std::vector<const MixStrategy*>& strategies,
-                       RenderStatistics& statistics) {
-    for (std::size_t i = 0; i < strategies.size(); ++i) {
-        const StrategyCounts& counts = total.strategies[i];
-        StrategyStatistics s;
-        s.name = strategies[i]->label;
-        s.proposals = counts.proposals;
-        s.accepted = counts.accepted;
-        s.mean_acceptance = counts.mean_acceptance();
-        for (std::size_t kind = 1; kind < failure_kinds; ++kind)
-            if (counts.failures[kind]) s.failures[std::string(failure_names[kind])] = counts.failures[kind];
-        statistics.strategies.push_back(std::move(s));
-        const auto non_finite = counts.failed(Failure::non_finite);
-        statistics.non_finite += non_finite;
-        if (non_finite)
-            statistics.warnings.push_back(fmt::format("{} proposals of '{}' were NaN or infinite and were rejected",
-                                                      non_finite, statistics.strategies.back().name));
-    }
+void report_strategy(const std::string& name, const StrategyCounts& counts, RenderStatistics& statistics) {
+    StrategyStatistics s;
+    s.name = name;
+    s.proposals = counts.proposals;
+    s.accepted = counts.accepted;
+    s.mean_acceptance = counts.mean_acceptance();
+    for (std::size_t kind = 1; kind < failure_kinds; ++kind)
+        if (counts.failures[kind]) s.failures[std::string(failure_names[kind])] = counts.failures[kind];
+    statistics.strategies.push_back(std::move(s));
+    const auto non_finite = counts.failed(Failure::non_finite);
+    statistics.non_finite += non_finite;
+    if (non_finite)
+        statistics.warnings.push_back(
+            fmt::format("{} proposals of '{}' were NaN or infinite and were rejected", non_finite, name));
 }
 
 void warn_of_hindrances(const Mix& mix, const Scene& scene, RenderStatistics& statistics) {
@@ -68,13 +65,20 @@ class ChainRun {
                                                    settings.error_image ? &replicate_films_ : nullptr);
           }) {
         for (const RunningChain& c : chains_) ++chain_counts_[c.group][c.replicate];
+        if (settings.mix.exchange_every > 0)
+            exchanges_.emplace(static_cast<std::uint64_t>(settings.mix.exchange_every), settings.mix.seed, chains_);
         if (settings.error_image) replicate_films_ = cells(SharedMetropolisFilm(scene.film()));
     }
 
     // Makes at most that many mutations of each chain, and returns how many.
     std::uint64_t advance(std::uint64_t most) {
         const std::uint64_t mutations = std::min(most, blocks_.left_of_batch());
-        parallel_for(chains_.size(), [&](std::uint64_t i) { workers_.local()->advance(chains_[i], mutations); });
+        for (std::uint64_t left = mutations; left > 0;) {
+            const std::uint64_t n = exchanges_ ? std::min(left, exchanges_->left_of_round()) : left;
+            parallel_for(chains_.size(), [&](std::uint64_t i) { workers_.local()->advance(chains_[i], n); });
+            left -= n;
+            if (exchanges_) exchanges_->passed(n, chains_, [&] { return workers_.local().get(); });
+        }
         for (const auto& worker : workers_) blocks_.take(worker->blocks);
         blocks_.passed(mutations);
         done_ += mutations;
@@ -123,8 +127,15 @@ class ChainRun {
     void report(const std::vector<const MixStrategy*>& strategies, RenderStatistics& statistics) const {
         for (const auto& worker : workers_) statistics.rays += worker->evaluator->tracer().rays();
         report_b(statistics);
-        report_strategies(diagnostics(), strategies, statistics);
+        const Diagnostics total = diagnostics();
+        for (std::size_t i = 0; i < strategies.size(); ++i)
+            report_strategy(strategies[i]->label, total.strategies[i], statistics);
         report_errors(record(), blocks_, statistics);
+        if (exchanges_) {
+            StrategyCounts exchanges;
+            for (const auto& worker : workers_) exchanges += worker->exchanges;
+            report_strategy("exchange", exchanges, statistics);
+        }
     }
 
   private:
@@ -203,6 +214,7 @@ class ChainRun {
     BlockRecord blocks_;
     ReplicateFilms replicate_films_;
     tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker>> workers_;
+    std::optional<Exchanges> exchanges_;
     std::uint64_t done_ = 0;  // mutations of each chain
 };
 

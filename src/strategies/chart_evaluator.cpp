@@ -33,9 +33,10 @@ bool ChartEvaluator::invert(const PssState& x, int t, PrimarySample& u, Rng& rng
            InverseFailure::none;
 }
 
-bool ChartEvaluator::go_over(const PssState& x, int t, PssState& y, Rng& rng) {
-    return invert(x, t, y.u, rng) && evaluate(y) == PathFailure::none &&
-           deviation(y.path, x.path.x()) < largest_deviation;
+bool ChartEvaluator::go_over(PssState& x, int t, PssState& y, Rng& rng) {
+    if (!x.inverse_exists) x.inverse_exists = invert(x, x.u.t, unread_, rng);
+    if (!x.inverse_exists || !invert(x, t, y.u, rng) || evaluate(y) != PathFailure::none) return false;
+    return y.inverse_exists = deviation(y.path, x.path.x()) < largest_deviation;
 }
 
 bool ChartEvaluator::find_technique(PssState& x, Rng& rng) {

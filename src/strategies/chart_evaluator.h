@@ -34,8 +34,9 @@ class ChartEvaluator final : public Evaluator {
     std::span<const double> weights(const PssState& x);
     // Coordinates of x's path by technique t.
     bool invert(const PssState& x, int t, PrimarySample& u, Rng& rng);
-    // y becomes x's path by technique t, traced again. False where there is no inverse or it does not lead back.
-    bool go_over(const PssState& x, int t, PssState& y, Rng& rng);
+    // y becomes x's path by technique t, traced again. False where there is no inverse or it does not lead back to the
+    // path, and where there is none by x's own technique (known), by which the way back would go.
+    bool go_over(PssState& x, int t, PssState& y, Rng& rng);
 
   private:
     Chart chart_;

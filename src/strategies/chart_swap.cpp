@@ -2,13 +2,6 @@
 
 namespace keyhole {
 
-bool ChartMove::go_over(PssState& x, int t, PssState& y, Rng& rng) const {
-    if (!x.inverse_exists) x.inverse_exists = charts_.invert(x, x.u.t, own_, rng);
-    if (!x.inverse_exists || !charts_.go_over(x, t, y, rng)) return false;
-    y.inverse_exists = true;
-    return true;
-}
-
 Proposal ChartSwap::propose(PssState& x, PssState& y, Rng& rng) const {
     if (!charts_.find_technique(x, rng)) return Proposal::failed(Failure::inverse_failed);
     const int k = x.u.k, t = x.u.t;
@@ -22,7 +15,7 @@ Proposal ChartSwap::propose(PssState& x, PssState& y, Rng& rng) const {
     if (other == 0) return Proposal::failed(Failure::unchanged);
     const double q_chosen = q(other - 1);
     const double ratio = w[other - 1] / w[t - 1] * (q_own * (possible - q_own)) / (q_chosen * (possible - q_chosen));
-    if (!go_over(x, other, y, rng)) return Proposal::failed(Failure::inverse_failed);
+    if (!charts_.go_over(x, other, y, rng)) return Proposal::failed(Failure::inverse_failed);
     return {ratio * (y.target / x.target), Failure::none};
 }
 
@@ -33,7 +26,7 @@ Proposal ChartGibbs::propose(PssState& x, PssState& y, Rng& rng) const {
                       x.u.k + 1, 1, [&](int i) { return w[i]; }, rng) +
                   1;
     if (t == x.u.t) return Proposal::failed(Failure::unchanged);
-    if (!go_over(x, t, y, rng)) return Proposal::failed(Failure::inverse_failed);
+    if (!charts_.go_over(x, t, y, rng)) return Proposal::failed(Failure::inverse_failed);
     return {1, Failure::none};
 }
 

@@ -14,16 +14,10 @@ namespace keyhole {
 class ChartMove : public ToOtherTechnique {
   public:
     ChartMove(ChartEvaluator& evaluator, const TechniqueDistribution& techniques)
-        : ToOtherTechnique(evaluator, techniques), charts_(evaluator), own_(evaluator.layout()) {}
+        : ToOtherTechnique(evaluator, techniques), charts_(evaluator) {}
 
   protected:
-    // y becomes x's path by technique t, if there are inverses for both ways.
-    bool go_over(PssState& x, int t, PssState& y, Rng& rng) const;
-
     ChartEvaluator& charts_;
-
-  private:
-    mutable PrimarySample own_;  // coordinates of the path by its own technique, which show that there are any
 };
 
 // t' ~ q(t' | k), among the techniques other than t that can make the path; Q is the sum of q over all that can:

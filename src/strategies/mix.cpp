@@ -94,6 +94,12 @@ std::vector<MixField> make_fields() {
             "chains", P::integer("count", 0, 1, most_chains, "number of chains").or_word("auto"),
             [](auto& m) -> auto& { return m.chain_count; }),
         field(
+            "chains",
+            P::integer("exchange-every", 0, 1, 1 << 30,
+                       "mutations of each chain between exchanges of paths between chains in different charts")
+                .or_word("never"),
+            [](auto& m) -> auto& { return m.exchange_every; }),
+        field(
             "chains", chain_length.or_word("auto"), [](auto& m) -> auto& { return m.chain_length; }),
         field(
             "bootstrap",
@@ -135,6 +141,10 @@ std::optional<Contradiction> techniques_contradiction(const Mix& mix) {
                              "a state of all techniques has paths of all lengths; it cannot keep one"};
     if (choice.all_at_once && choice.weighting == Weighting::splat)
         return Contradiction{"techniques.weights", "with all techniques in a state, the target must be weighted"};
+    if (mix.exchange_every > 0 && (choice.all_at_once || choice.weighting == Weighting::splat))
+        return Contradiction{"chains.exchange-every",
+                             "chains exchange paths only where each state is one path with its technique's weight in "
+                             "the target"};
     for (const MixStrategy& s : mix.strategies) {
         if (choice.all_at_once && !s.info->all_at_once && s.weight > 0)
             return Contradiction{"techniques.per-state",

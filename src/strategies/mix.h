@@ -46,6 +46,7 @@ struct Mix {
     PathLengths lengths;
     TechniqueChoice techniques;
     int chain_count = 0;
+    int exchange_every = 0;         // mutations between exchanges of paths between chains; 0: never
     std::int64_t chain_length = 0;  // mutations of each chain, where the render is given neither a time nor a number
     std::int64_t bootstrap_samples = 0;
     std::vector<MixStrategy> strategies;

@@ -6,7 +6,7 @@ namespace keyhole {
 namespace {
 
 StateNeeds needs_of(const Mix& mix) {
-    StateNeeds needs;
+    StateNeeds needs{.path = mix.exchange_every > 0};
     for (const MixStrategy& s : mix.strategies) {
         if (!(s.weight > 0)) continue;
         needs.path = needs.path || s.info->needs.path;

@@ -30,7 +30,7 @@ TEST_P(Agrees, WithBidirectionalPathTracing) {
 
     settings.integrator = Integrator::mmlt;
     settings.mutations_per_pixel = 4000;
-    for (const char* name : {"mmlt", "rjmlt", "cmlt", "cmlt-gibbs", "cmlt-ipsm", "pssmlt", "pssmlt-mix"}) {
+    for (const char* name : {"mmlt", "rjmlt", "cmlt", "cmlt-gibbs", "cmlt-ipsm", "cmlt-exchange", "pssmlt", "pssmlt-mix"}) {
         const PathLengths lengths = settings.mix.lengths;
         settings.mix = builtin_mix(name);
         settings.mix.lengths = lengths;

@@ -127,7 +127,7 @@ Mix random_mix(Rng& rng) {
         for (const Parameter& p : s.info->parameters) s.parameters[p.name] = random_value(p);
         if (!settle(s).empty()) s.parameters["s1"] = s.parameters["s2"];
     }
-    if (contradiction(mix)) mix.techniques.all_at_once = false;
+    if (contradiction(mix)) mix.techniques = {};
     return mix;
 }
 
