@@ -42,7 +42,7 @@ Json settings_json(const RenderSettings& s) {
 }
 
 Json strategy_json(const StrategyStatistics& s) {
-    return {{"name", s.name},
+    Json json = {{"name", s.name},
             {"proposals", s.proposals},
             {"accepted", s.accepted},
             {"mean_acceptance", s.mean_acceptance},
@@ -51,6 +51,11 @@ Json strategy_json(const StrategyStatistics& s) {
             {"autocorrelation_time", s.luminance.autocorrelation_time},
             {"position_effective_sample_size", s.position.effective_sample_size},
             {"position_autocorrelation_time", s.position.autocorrelation_time}};
+    if (s.excluded > 0) json["excluded"] = s.excluded;
+    if (s.second.proposals > 0)
+        json["second_stage"] = {
+            {"proposals", s.second.proposals}, {"accepted", s.second.accepted}, {"failures", s.second.failures}};
+    return json;
 }
 
 Json errors_json(const ErrorStatistics& e) {

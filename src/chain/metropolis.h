@@ -5,7 +5,6 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "chain/diagnostics.h"
@@ -20,11 +19,13 @@ concept Sink = requires(T& sink, const State& state, double weight) {
 };
 
 struct StepOutcome {
-    std::size_t strategy = 0;         // its index in the mixture
-    Failure failure = Failure::none;  // other than `none`: nothing was proposed
-    double acceptance = 0;            // the probability with which the proposal was accepted
+    std::size_t strategy = 0;               // its index in the mixture
+    Failure failure = Failure::none;        // other than `none`: nothing was proposed
+    Failure first_failure = Failure::none;  // other than `none`: the first stage failed, and there was a second one
+    double acceptance = 0;                  // the probability with which the proposal was accepted
     bool accepted = false;
-    bool idle = false;  // no strategy applies to the state; `strategy` is meaningless
+    bool idle = false;      // no strategy applies to the state; `strategy` is meaningless
+    bool excluded = false;  // nothing counts
 };
 
 // A chain's value is its current state and the weight it still holds; with the state of the random numbers that is all
@@ -62,10 +63,12 @@ class Chain {
     // proposed one a, whichever becomes the next. The current state's weight is held until it is left, so
     // that at most one state is splatted in a step.
     //
-    // `mixture` is a Mixture<State, Random>, or anything with its select, strategy and completed_ratio.
+    // `mixture` is a Mixture<State, Random>, or anything with its select, strategy and completed_ratio. With
+    // `excludes_failures` a step that fails is none: the current state gets no weight for it (Rectification::exclude).
     // A ratio that is negative, infinite or NaN counts as Failure::non_finite and is rejected.
     template <class MixtureType, RandomSource Random, Sink<State> Film>
-    StepOutcome step(const MixtureType& mixture, Random& random, Film& film, Diagnostics& diagnostics) {
+    StepOutcome step(const MixtureType& mixture, Random& random, Film& film, Diagnostics& diagnostics,
+                     bool excludes_failures = false) {
         State& x = slots_[current_];
         State& y = slots_[1 - current_];
         StepOutcome outcome;
@@ -77,14 +80,15 @@ class Chain {
             return outcome;
         }
         outcome.strategy = selection.index;
-        const Proposal proposal = mixture.strategy(selection.index).propose(x, y, random);
+        Proposal proposal = mixture.strategy(selection.index).propose(x, y, random);
+        if (proposal.failure == Failure::none) proposal.ratio = mixture.completed_ratio(proposal.ratio, selection, y);
+        outcome.acceptance = acceptance(proposal);
         outcome.failure = proposal.failure;
-        if (proposal.failure == Failure::none) {
-            const double ratio = mixture.completed_ratio(proposal.ratio, selection, y);
-            if (ratio >= 0 && ratio <= std::numeric_limits<double>::max())
-                outcome.acceptance = std::min(1.0, ratio);
-            else
-                outcome.failure = Failure::non_finite;
+        outcome.first_failure = proposal.first_failure;
+        if (excludes_failures && outcome.failure != Failure::none) {
+            outcome.excluded = true;
+            diagnostics.strategies[selection.index].exclude(outcome.failure);
+            return outcome;
         }
         const double a = outcome.acceptance;
         outcome.accepted = a >= 1 || (a > 0 && random.uniform() < a);
@@ -96,7 +100,7 @@ class Chain {
             current_ = 1 - current_;
             held_ = a;
         }
-        diagnostics.strategies[selection.index].add(outcome.failure, a, outcome.accepted);
+        diagnostics.strategies[selection.index].add(outcome.failure, a, outcome.accepted, outcome.first_failure);
         return outcome;
     }
 

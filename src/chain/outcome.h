@@ -38,6 +38,8 @@ inline std::string_view failure_name(Failure failure) { return failure_names[sta
 struct Proposal {
     double ratio = 0;
     Failure failure = Failure::none;  // other than `none`: there is no proposed state, and the ratio is not read
+    Failure first_failure =
+        Failure::none;  // other than `none`: of the first stage; this is the outcome of a second one
 
     static Proposal failed(Failure failure) { return {0, failure}; }
 };

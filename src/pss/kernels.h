@@ -24,6 +24,9 @@ inline Double4 wrap_unit(Double4 x) {
     return std::bit_cast<Double4>(std::bit_cast<Int64x4>(x) & (x < 1));
 }
 
+// The shortest way from b to a around the torus, in [-1/2, 1/2].
+inline double wrapped_difference(double a, double b) { return std::remainder(a - b, 1.0); }
+
 // 2^x for x in [-126, 0], to 4e-6 relative: Taylor's series for the fraction in [-1/2, 1/2], the exponent by its bits.
 inline Float8 exp2_approximate(Float8 x) {
     const Int32x8 whole = __builtin_convertvector(x - 0.5f, Int32x8);
@@ -53,7 +56,28 @@ struct KelemenKernel {
         }
     }
 
+    KelemenKernel scaled(double factor) const {
+        return KelemenKernel(smallest() * factor, static_cast<double>(scale_) * factor);
+    }
+
+    // q(a, y) / q(b, y) of `n` coordinates, where b can step to y. The density of a step d in one coordinate is
+    // 1 / (2 ln(s2/s1) |d|), s1 <= |d| <= s2.
+    double density_ratio(const double* a, const double* b, const double* y, int n) const {
+        const double s1 = smallest(), s2 = static_cast<double>(scale_);
+        double ratio = 1;
+        for (int i = 0; i < n; ++i) {
+            const double from_a = std::abs(wrapped_difference(y[i], a[i]));
+            if (from_a < s1 || from_a > s2) return 0;
+            ratio *= std::abs(wrapped_difference(y[i], b[i])) / from_a;
+        }
+        return ratio;
+    }
+
   private:
+    double smallest() const {
+        return static_cast<double>(scale_) * std::exp2(0x1p31 * static_cast<double>(log2_ratio_));
+    }
+
     static constexpr double smallest_log2 = -126;  // of exp2_approximate; far below what moves a coordinate
 
     float scale_, log2_ratio_;
@@ -71,7 +95,26 @@ struct GaussianKernel {
         }
     }
 
+    GaussianKernel scaled(double factor) const { return GaussianKernel(sigma_ * factor); }
+
+    // q(a, y) / q(b, y) of `n` coordinates.
+    double density_ratio(const double* a, const double* b, const double* y, int n) const {
+        double log_ratio = 0;
+        for (int i = 0; i < n; ++i) log_ratio += log_density(y[i] - a[i]) - log_density(y[i] - b[i]);
+        return std::exp(log_ratio);
+    }
+
   private:
+    // Up to a constant. Steps of any number of turns around the torus lead to the same point; those of more than three
+    // are left out, which is less than 1e-10 of the density for sigma <= 0.5.
+    double log_density(double step) const {
+        const double d = std::remainder(step, 1.0), inverse = 1 / (2 * sigma_ * sigma_);
+        double turns = 0;  // the longer ways, relative to the shortest
+        for (int m = 1; m <= 3; ++m)
+            turns += std::exp((-2 * d - m) * m * inverse) + std::exp((2 * d - m) * m * inverse);
+        return -d * d * inverse + std::log1p(turns);
+    }
+
     double sigma_;
 };
 

@@ -34,6 +34,7 @@ std::vector<RunningChain> start_chains(std::vector<ChainGroup>& groups, std::uin
                               {},
                               {},
                               0,
+                              0,
                               static_cast<std::uint32_t>(g),
                               start.replicate});
         }
@@ -52,8 +53,9 @@ std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scen
 ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
                          const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films)
     : evaluator(make_evaluator(scene, layout, mix)),
-      mixture(make_mixture(applicable_strategies(mix, scene),
-                           {*evaluator, dynamic_cast<ChartEvaluator*>(evaluator.get()), techniques, mix.lengths})),
+      mixture(make_mixture(
+          applicable_strategies(mix, scene),
+          {*evaluator, dynamic_cast<ChartEvaluator*>(evaluator.get()), techniques, mix.lengths, mix.rectification})),
       films(replicate_films ? 0 : groups, MetropolisFilm(scene.film())),
       blocks(groups, std::vector<BlockSums>(replicate_count(mix))),
       largest(groups),
@@ -61,6 +63,7 @@ ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, con
       jumps(mixture.size()),
       grid_(evaluator->window()),
       replicate_films_(replicate_films),
+      most_redraws_(mix.rectification.policy == Rectification::exclude ? most_redraws : 0),
       estimator_(*evaluator, techniques, mix.lengths.fixed) {
     for (const MixStrategy* s : applicable_strategies(mix, scene)) independent_.push_back(s->info->independent);
     if (mix.exchange_every > 0) exchange_.emplace(dynamic_cast<ChartEvaluator&>(*evaluator));
@@ -85,14 +88,25 @@ void ChainWorker::advance(RunningChain& running, std::uint64_t mutations) {
 
 template <class Sink>
 void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Sink& sink) {
-    for (std::uint64_t i = 0; i < mutations; ++i) {
-        const StepOutcome outcome = running.chain.step(mixture, running.rng, sink, diagnostics);
+    for (std::uint64_t i = 0; i < mutations;) {
+        const bool excludes = running.redraws < most_redraws_;
+        const StepOutcome outcome = running.chain.step(mixture, running.rng, sink, diagnostics, excludes);
+        if (!outcome.idle && independent_[outcome.strategy]) estimate_b(running, outcome);
+        if (outcome.excluded) {
+            ++running.redraws;
+            continue;
+        }
+        running.redraws = 0;
+        ++i;
         if (++running.steps % observed_every == 0) observe(running, outcome);
-        if (outcome.idle || !independent_[outcome.strategy]) continue;
-        const double b = outcome.failure == Failure::none ? estimator_.estimate(running.chain.proposed(outcome)) : 0;
-        running.b.add(b);
-        largest[running.group].add(b);
     }
+}
+
+void ChainWorker::estimate_b(RunningChain& running, const StepOutcome& outcome) {
+    const bool failed = outcome.failure != Failure::none || outcome.first_failure != Failure::none;
+    const double b = failed ? 0 : estimator_.estimate(running.chain.proposed(outcome));
+    running.b.add(b);
+    largest[running.group].add(b);
 }
 
 void ChainWorker::exchange(RunningChain& a, RunningChain& b, Rng& rng) {

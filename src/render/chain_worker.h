@@ -29,6 +29,7 @@ struct RunningChain {
     RunningMean b;             // of its group, estimated by its independent proposals
     ObservableMoments states;  // of every sixteenth state
     std::uint64_t steps = 0;
+    int redraws = 0;              // since the last step, of those that were excluded
     std::uint32_t group = 0;      // see ChainGroup
     std::uint32_t replicate = 0;  // see ChainSeed
 };
@@ -90,11 +91,14 @@ class ChainWorker {
     void with_sink(const RunningChain& running, const Body& body);
     template <class Sink>
     void advance(RunningChain& running, std::uint64_t mutations, Sink& sink);
+    // From the proposal of an independent strategy.
+    void estimate_b(RunningChain& running, const StepOutcome& outcome);
     void observe(RunningChain& running, const StepOutcome& outcome);
     Observables observables(const PssState& state) const;
 
     BlockGrid grid_;
     ReplicateFilms* replicate_films_;
+    int most_redraws_;
     std::vector<char> independent_;  // of each strategy: whether its proposals estimate b
     LargeStep estimator_;
     std::optional<ChartExchange> exchange_;

@@ -15,26 +15,40 @@
 namespace keyhole {
 namespace {
 
+std::map<std::string, std::uint64_t> failures_by_name(const StageCounts& counts) {
+    std::map<std::string, std::uint64_t> failures;
+    for (std::size_t kind = 1; kind < failure_kinds; ++kind)
+        if (counts.failures[kind]) failures[std::string(failure_names[kind])] = counts.failures[kind];
+    return failures;
+}
+
 void report_strategy(const std::string& name, const StrategyCounts& counts, RenderStatistics& statistics) {
     StrategyStatistics s;
     s.name = name;
     s.proposals = counts.proposals;
     s.accepted = counts.accepted;
     s.mean_acceptance = counts.mean_acceptance();
-    for (std::size_t kind = 1; kind < failure_kinds; ++kind)
-        if (counts.failures[kind]) s.failures[std::string(failure_names[kind])] = counts.failures[kind];
+    s.failures = failures_by_name(counts);
+    s.excluded = counts.excluded;
+    s.second = {counts.second.proposals, counts.second.accepted, failures_by_name(counts.second)};
     statistics.strategies.push_back(std::move(s));
-    const auto non_finite = counts.failed(Failure::non_finite);
+    const auto non_finite = counts.failed(Failure::non_finite) + counts.second.failed(Failure::non_finite);
     statistics.non_finite += non_finite;
     if (non_finite)
         statistics.warnings.push_back(
             fmt::format("{} proposals of '{}' were NaN or infinite and were rejected", non_finite, name));
 }
 
-void warn_of_hindrances(const Mix& mix, const Scene& scene, RenderStatistics& statistics) {
+// What the mix cannot do in the scene, or does wrong by intention.
+void warn_of_mix(const Mix& mix, const Scene& scene, RenderStatistics& statistics) {
     for (const MixStrategy& s : mix.strategies)
         if (const std::string why = s.info->hindrance(scene, mix.lengths); s.weight > 0 && !why.empty())
             statistics.warnings.push_back(fmt::format("strategy '{}' never applies here: {}", s.label, why));
+    if (mix.rectification.policy == Rectification::exclude)
+        statistics.warnings.push_back(
+            "biased: proposals without contribution are left out (rectification = \"exclude\"), which darkens what "
+            "often fails, such as the surroundings of occluders, and brightens the rest; \"walk-on\" and \"retry\" are "
+            "exact");
     if (mix.techniques.light_vertices != LightVertices::any)
         statistics.warnings.push_back(
             "only some techniques are in use (techniques.light-vertices): light that no other finds is missing");
@@ -227,7 +241,7 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
                        static_cast<std::uint64_t>(mix.chain_count));
     RenderResult result;
     RenderStatistics& statistics = result.statistics;
-    warn_of_hindrances(mix, scene, statistics);
+    warn_of_mix(mix, scene, statistics);
 
     control.announce("bootstrap", 0);
     const CoordinateLayout layout(scene, mix.lengths.max);

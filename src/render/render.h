@@ -68,7 +68,13 @@ struct StrategyStatistics {
     std::string name;  // its label in the mix
     std::uint64_t proposals = 0, accepted = 0;
     double mean_acceptance = 0;
-    std::map<std::string, std::uint64_t> failures;  // by kind
+    std::map<std::string, std::uint64_t> failures;  // by kind; of first stages, where a second one follows
+    std::uint64_t excluded = 0;                     // of the proposals: failures that did not count as steps
+    // Second stages, after first ones that failed: how many there were, and what became of them.
+    struct SecondStage {
+        std::uint64_t proposals = 0, accepted = 0;
+        std::map<std::string, std::uint64_t> failures;
+    } second;
     // What its proposals are worth by themselves, at most (see mixing_bound): of the luminance that a path carries (the
     // logarithm of the target C), and of its position in the image.
     Mixing luminance, position;

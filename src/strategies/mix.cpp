@@ -15,13 +15,13 @@ namespace {
 constexpr std::int64_t most_chains = 1 << 30, many = std::int64_t{1} << 50;
 constexpr std::int64_t fewest_samples = 4;  // of a bootstrap: a quarter of them fits the techniques
 
-// A key that is kept in a member of Mix: a text, an integer, or an enumeration whose choices stand in its order.
+// A key that is kept in a member of Mix: a text, a number, or an enumeration whose choices stand in its order.
 template <class Member>
 MixField field(std::string section, Parameter parameter, Member member) {
     using T = std::remove_reference_t<decltype(member(std::declval<Mix&>()))>;
     const auto names = parameter.choices;
     const auto get = [=](const Mix& mix) -> Value {
-        if constexpr (std::is_same_v<T, std::string>)
+        if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, double>)
             return member(mix);
         else if (names.empty())
             return static_cast<std::int64_t>(member(mix));
@@ -29,8 +29,8 @@ MixField field(std::string section, Parameter parameter, Member member) {
             return names.at(static_cast<std::size_t>(member(mix)));
     };
     const auto set = [=](Mix& mix, const Value& value) {
-        if constexpr (std::is_same_v<T, std::string>)
-            member(mix) = std::get<std::string>(value);
+        if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, double>)
+            member(mix) = std::get<T>(value);
         else if (names.empty())
             member(mix) = static_cast<T>(std::get<std::int64_t>(value));
         else
@@ -46,7 +46,12 @@ std::vector<MixField> make_fields() {
                                   "what a path counts as: the luminance or the largest channel of its contribution");
     const auto rectification = P::choice(
         "rectification", {"off", "exclude", "walk-on", "retry"},
-        "what follows a proposal without contribution; only \"off\", plain Metropolis-Hastings, exists so far");
+        "what follows a proposal without contribution: nothing; a new draw (biased); a step on; a smaller step");
+    const auto walk_steps = P::integer("walk-steps", 4, 2, 1000, "steps of a walk on, the first one included")
+                                .only_with("rectification", "walk-on");
+    const auto retry_scale = P::number("retry-scale", 0.25, 0, 1, "size of the second step, in units of the first")
+                                 .open()
+                                 .only_with("rectification", "retry");
     const auto max_length =
         P::integer("max", 0, 1, PathLengths::longest, "longest path; \"scene\": what the scene file says, else 12");
     const auto chain_length =
@@ -62,7 +67,11 @@ std::vector<MixField> make_fields() {
         field(
             "", target, [](auto& m) -> auto& { return m.target; }),
         field(
-            "", rectification, [](auto& m) -> auto& { return m.rectification; }),
+            "", rectification, [](auto& m) -> auto& { return m.rectification.policy; }),
+        field(
+            "", walk_steps, [](auto& m) -> auto& { return m.rectification.walk_steps; }),
+        field(
+            "", retry_scale, [](auto& m) -> auto& { return m.rectification.retry_scale; }),
         field(
             "", P::integer("seed", 0, 0, any_seed, "another seed gives another independent image"),
             [](auto& m) -> auto& { return m.seed; }),
@@ -204,6 +213,18 @@ const std::vector<MixField>& mix_fields() {
     return fields;
 }
 
+bool has_effect(const MixField& field, const Mix& mix) {
+    if (field.parameter.needs.empty()) return true;
+    for (const MixField& other : mix_fields())
+        if (other.key() == field.parameter.needs) return other.get(mix) == Value(field.parameter.needed_value);
+    return false;
+}
+
+void settle_fields(Mix& mix) {
+    for (const MixField& field : mix_fields())
+        if (!has_effect(field, mix)) field.set(mix, field.parameter.fallback);
+}
+
 const Parameter& weight_parameter() {
     static const Parameter weight =
         Parameter::number("weight", 1, 0, 1e12, "how often it is chosen, relative to the others; 0: never");
@@ -233,8 +254,6 @@ std::string settle(MixStrategy& strategy) {
 }
 
 std::optional<Contradiction> contradiction(const Mix& mix) {
-    if (mix.rectification != Rectification::off)
-        return Contradiction{"rectification", "policies other than \"off\" come with a later version"};
     if (mix.lengths.max > 0 && mix.lengths.max < mix.lengths.min)
         return Contradiction{"lengths.max",
                              fmt::format("'max' = {} is below 'min' = {}", mix.lengths.max, mix.lengths.min)};
@@ -257,6 +276,12 @@ void apply_settings(Mix& mix, const std::vector<Setting>& settings) {
             throw InputError({}, fmt::format("{}: {} has no effect here; it needs {}.{}={}", s.origin, s.key,
                                              strategy->label, p->needs, p->needed_value));
     }
+    for (const Setting& s : settings)
+        for (const MixField& field : mix_fields())
+            if (s.key == field.key() && !has_effect(field, mix))
+                throw InputError({}, fmt::format("{}: {} has no effect here; it needs {}={}", s.origin, s.key,
+                                                 field.parameter.needs, field.parameter.needed_value));
+    settle_fields(mix);
     for (MixStrategy& strategy : mix.strategies)
         if (const std::string wrong = settle(strategy); !wrong.empty())
             throw InputError({}, strategy.label + ": " + wrong);

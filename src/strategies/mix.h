@@ -12,9 +12,6 @@
 
 namespace keyhole {
 
-// What happens to a proposal without contribution (theory, section 5). Only `off` is there so far.
-enum class Rectification { off, exclude, walk_on, retry };
-
 // How many vertices from the light the techniques in use may have.
 enum class LightVertices { any, at_most_one, one, none };
 
@@ -41,7 +38,7 @@ struct MixStrategy {
 struct Mix {
     std::string name, description;
     TargetFunction target = TargetFunction::luminance;
-    Rectification rectification = Rectification::off;
+    RectificationSettings rectification;
     std::uint64_t seed = 0;  // < 2^63, as TOML has no greater integers
     PathLengths lengths;
     TechniqueChoice techniques;
@@ -64,6 +61,8 @@ struct MixField {
     std::string key() const { return section.empty() ? parameter.name : section + "." + parameter.name; }
 };
 const std::vector<MixField>& mix_fields();
+// Whether the field that this one needs has the needed value.
+bool has_effect(const MixField& field, const Mix& mix);
 
 // The key of a strategy's weight, beside its parameters.
 const Parameter& weight_parameter();
@@ -74,9 +73,11 @@ void set_value(Mix& mix, const std::string& key, const std::string& text);
 
 // Puts parameters without effect back to their defaults. What is wrong with the strategy's parameters; empty: nothing.
 std::string settle(MixStrategy& strategy);
+// The same of the fields outside of strategies.
+void settle_fields(Mix& mix);
 
 // What is wrong with a mix as a whole: no strategies or weights, nothing that reaches every path, two strategies that
-// are the same, lengths, policies that do not exist yet.
+// are the same, lengths, techniques.
 struct Contradiction {
     std::string key;  // what it is about, as for set_value; "strategy" for all of them
     std::string message;

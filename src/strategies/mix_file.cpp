@@ -217,6 +217,10 @@ Mix Reader::read(const toml::table& root) {
     Mix mix;
     mix.name = std::filesystem::path(filename_).stem().string();
     read_section(mix, "", root);
+    for (const MixField& field : mix_fields())
+        if (const auto given = places_.find(field.key()); given != places_.end() && !has_effect(field, mix))
+            fail(given->second, fmt::format("'{}' has no effect here; it needs {} = \"{}\"", field.parameter.name,
+                                            field.parameter.needs, field.parameter.needed_value));
     if (const toml::node* strategies = root.get("strategy")) read_strategies(mix, *strategies);
     if (const auto wrong = contradiction(mix)) {
         const auto known = places_.find(wrong->key);
@@ -247,6 +251,7 @@ Mix read_mix_file(const std::string& filename) {
 std::string write_mix(const Mix& mix) {
     std::string text, section;
     for (const MixField& field : mix_fields()) {
+        if (!has_effect(field, mix)) continue;
         if (field.section != section) text += "\n[" + (section = field.section) + "]\n";
         text += field.parameter.name + " = " + to_toml(field.parameter, field.get(mix)) + "\n";
     }

@@ -20,6 +20,13 @@ void keep_or_draw(const double* x, int old_n, double* y, int n, Rng& rng) {
 bool start_move(Evaluator& evaluator, PssState& x, Rng& rng) {
     return evaluator.find_coordinates(x, rng) && evaluator.may_move_in_chart(x, rng);
 }
+// y's coordinates are a symmetric step from those of x, which may be y itself.
+template <class Kernel>
+void step(Evaluator& evaluator, const Kernel& kernel, const PssState& x, PssState& y, Rng& rng) {
+    y.u.k = x.u.k;
+    y.u.t = x.u.t;
+    kernel(x.u.data(), y.u.data(), evaluator.layout().count(x.u.k, x.u.t), rng);
+}
 // Evaluates y at its coordinates; the proposal's ratio is C(y) / C(x) times `factor`.
 Proposal finish_move(Evaluator& evaluator, const PssState& x, PssState& y, double factor, Rng& rng) {
     const PathFailure failure = evaluator.evaluate(y);
@@ -64,16 +71,43 @@ Proposal LargeStep::propose(PssState& x, PssState& y, Rng& rng) const {
     const int k = x.u.k;
     const PathFailure failure =
         fixed_length_ ? draw(y, {k, techniques_.sample_given_length(k, rng.uniform())}, rng) : draw(y, rng);
-    return {estimate(y) / estimate(x), to_failure(failure)};
+    if (failure == PathFailure::none) return {estimate(y) / estimate(x)};
+    if (rectification_.policy != Rectification::retry || !start_move(evaluator_, x, rng))
+        return Proposal::failed(to_failure(failure));
+    step(evaluator_, KelemenKernel(), x, y, rng);
+    return retried(to_failure(failure), finish_move(evaluator_, x, y, 1, rng), 1);
 }
 
 template <class Kernel>
 Proposal SmallStep<Kernel>::propose(PssState& x, PssState& y, Rng& rng) const {
     if (!start_move(evaluator_, x, rng)) return Proposal::failed(Failure::inverse_failed);
-    y.u.k = x.u.k;
-    y.u.t = x.u.t;
-    kernel_(x.u.data(), y.u.data(), evaluator_.layout().count(y.u.k, y.u.t), rng);
-    return finish_move(evaluator_, x, y, 1, rng);
+    step(evaluator_, kernel_, x, y, rng);
+    const Proposal first = finish_move(evaluator_, x, y, 1, rng);
+    if (first.failure == Failure::none) return first;
+    switch (rectification_.policy) {
+        case Rectification::walk_on:
+            return walk_on(first, rectification_.walk_steps, [&] {
+                step(evaluator_, kernel_, y, y, rng);
+                return finish_move(evaluator_, x, y, 1, rng);
+            });
+        case Rectification::retry:
+            return retry(first.failure, x, y, rng);
+        case Rectification::off:
+        case Rectification::exclude:
+            break;
+    }
+    return first;
+}
+
+template <class Kernel>
+Proposal SmallStep<Kernel>::retry(Failure failure, PssState& x, PssState& y, Rng& rng) const {
+    const int n = evaluator_.layout().count(x.u.k, x.u.t);
+    std::copy_n(y.u.data(), n, failed_.data());
+    step(evaluator_, second_, x, y, rng);
+    const double densities = kernel_.density_ratio(y.u.data(), x.u.data(), failed_.data(), n);
+    // Not traced in vain.
+    if (!(densities > 0)) return retried(failure, Proposal::failed(Failure::outside_support), 1);
+    return retried(failure, finish_move(evaluator_, x, y, 1, rng), densities);
 }
 
 Proposal TechniqueChange::propose(PssState& x, PssState& y, Rng& rng) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/rng.h"
+#include "chain/rectification.h"
 #include "chain/strategy.h"
 #include "pss/kernels.h"
 #include "strategies/evaluator.h"
@@ -18,12 +19,16 @@ Failure to_failure(PathFailure failure);
 //     r = [C(y) / P(k_y, t_y)] / [C(x) / P(k_x, t_x)].
 // Every proposal is also an independent estimate of b: C(y) / P(k_y, t_y), 0 if it failed.
 //
+// With Rectification::retry a small step about x follows one that fails: r = C(y) / C(x), since the density of the
+// failed point is the same from x and from y.
+//
 // Where a chain keeps its length k, t ~ P(t | k), which stands in place of P(k, t) in the ratio and in the estimate;
 // that is then one of b_k, the part of b that paths of length k carry.
 class LargeStep final : public PssStrategy {
   public:
-    LargeStep(Evaluator& evaluator, const TechniqueDistribution& techniques, bool fixed_length = false)
-        : evaluator_(evaluator), techniques_(techniques), fixed_length_(fixed_length) {}
+    LargeStep(Evaluator& evaluator, const TechniqueDistribution& techniques, bool fixed_length = false,
+              const RectificationSettings& rectification = {})
+        : evaluator_(evaluator), techniques_(techniques), fixed_length_(fixed_length), rectification_(rectification) {}
     std::string_view name() const override { return "large-step"; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
@@ -41,19 +46,30 @@ class LargeStep final : public PssStrategy {
     Evaluator& evaluator_;
     const TechniqueDistribution& techniques_;
     bool fixed_length_;
+    RectificationSettings rectification_;
 };
 
-// u' = u + symmetric step in the current chart, wrapped: r = C(y) / C(x).
+// u' = u + symmetric step in the current chart, wrapped: r = C(y) / C(x). What follows a step that fails is the
+// rectification's.
 template <class Kernel>
 class SmallStep final : public PssStrategy {
   public:
-    SmallStep(Evaluator& evaluator, const Kernel& kernel) : evaluator_(evaluator), kernel_(kernel) {}
+    SmallStep(Evaluator& evaluator, const Kernel& kernel, const RectificationSettings& rectification = {})
+        : evaluator_(evaluator),
+          kernel_(kernel),
+          second_(kernel.scaled(rectification.retry_scale)),
+          rectification_(rectification),
+          failed_(evaluator.make_state().u) {}
     std::string_view name() const override { return "small-step"; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
   private:
+    Proposal retry(Failure failure, PssState& x, PssState& y, Rng& rng) const;
+
     Evaluator& evaluator_;
-    Kernel kernel_;
+    Kernel kernel_, second_;
+    RectificationSettings rectification_;
+    mutable PrimarySample failed_;  // a strategy belongs to one thread
 };
 
 // What moves to another technique t' != t of the same length have in common: t' is drawn in proportion to q(t' | k).

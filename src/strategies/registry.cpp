@@ -20,12 +20,12 @@ StrategyInfo large_step() {
     info.ergodic = info.independent = info.all_at_once = true;
     info.hindrance = applies_always;
     info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<LargeStep>(c.evaluator, c.techniques, c.lengths.fixed);
+        return std::make_unique<LargeStep>(c.evaluator, c.techniques, c.lengths.fixed, c.rectification);
     };
     return info;
 }
 
-// The parameters of a symmetric step, and how to make a strategy Move<Kernel>(args..., kernel) with it.
+// The parameters of a symmetric step, of any strategy that makes one.
 StrategyInfo with_kernel() {
     constexpr double half = 0.5;  // no point of the torus is farther
     const auto step = [&](const char* name, double fallback, const char* kernel, const char* description) {
@@ -47,11 +47,11 @@ StrategyInfo with_kernel() {
     return info;
 }
 
-template <template <class> class Move, class... Args>
-std::unique_ptr<PssStrategy> make_with_kernel(const Values& v, Args&... args) {
-    if (std::get<std::string>(v.at("kernel")) == "gaussian")
-        return std::make_unique<Move<GaussianKernel>>(args..., GaussianKernel(number(v, "sigma")));
-    return std::make_unique<Move<KelemenKernel>>(args..., KelemenKernel(number(v, "s1"), number(v, "s2")));
+// make(kernel) gives the strategy.
+template <class Make>
+std::unique_ptr<PssStrategy> make_with_kernel(const Values& v, const Make& make) {
+    if (std::get<std::string>(v.at("kernel")) == "gaussian") return make(GaussianKernel(number(v, "sigma")));
+    return make(KelemenKernel(number(v, "s1"), number(v, "s2")));
 }
 
 StrategyInfo small_step() {
@@ -59,7 +59,11 @@ StrategyInfo small_step() {
     info.name = "small-step";
     info.description = "Moves every coordinate of the current technique by a small symmetric step";
     info.all_at_once = true;
-    info.make = [](const StrategyContext& c, const Values& v) { return make_with_kernel<SmallStep>(v, c.evaluator); };
+    info.make = [](const StrategyContext& c, const Values& v) {
+        return make_with_kernel(v, [&]<class Kernel>(const Kernel& kernel) -> std::unique_ptr<PssStrategy> {
+            return std::make_unique<SmallStep<Kernel>>(c.evaluator, kernel, c.rectification);
+        });
+    };
     return info;
 }
 
@@ -69,7 +73,9 @@ StrategyInfo inverse_small_step() {
     info.description = "Moves a path by a small step in the coordinates of a technique drawn for it, from the inverse";
     info.needs = {.path = true, .forgets = true};
     info.make = [](const StrategyContext& c, const Values& v) {
-        return make_with_kernel<InverseSmallStep>(v, *c.charts, c.techniques);
+        return make_with_kernel(v, [&]<class Kernel>(const Kernel& kernel) -> std::unique_ptr<PssStrategy> {
+            return std::make_unique<InverseSmallStep<Kernel>>(*c.charts, c.techniques, kernel);
+        });
     };
     return info;
 }

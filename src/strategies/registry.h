@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "chain/rectification.h"
 #include "strategies/inverse_small_step.h"
 #include "strategies/parameter.h"
 
@@ -27,6 +28,7 @@ struct StrategyContext {
     ChartEvaluator* charts;  // the same, or null where states are not of one technique each
     const TechniqueDistribution& techniques;
     PathLengths lengths;  // resolved: max > 0
+    RectificationSettings rectification;
 };
 
 struct StrategyInfo {

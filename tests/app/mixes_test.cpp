@@ -40,9 +40,16 @@ TEST_F(MixesCommand, AMixThatWasPrintedIsAMixFile) {
 }
 
 TEST_F(MixesCommand, SettingsAndTheirOwnOptionsEndUpInTheReport) {
-    const Finished done = run({"render", "room.xml", "-n", "4", "--bootstrap", "4096", "-o", "a.exr", "--set",
-                               "large-step.weight=0.5", "--set", "lengths.per-chain=fixed", "--set", "chains.count=9",
-                               "--chains", "24", "--seed", "7", "--max-length", "4"});
+    const Finished done = run({"render",       "room.xml",
+                               "-n",           "4",
+                               "--bootstrap",  "4096",
+                               "-o",           "a.exr",
+                               "--set",        "large-step.weight=0.5",
+                               "--set",        "lengths.per-chain=fixed",
+                               "--set",        "chains.count=9",
+                               "--chains",     "24",
+                               "--seed",       "7",
+                               "--max-length", "4"});
     ASSERT_EQ(done.exit_code, 0) << done.err;
     const nlohmann::json report = json("a.json");
     EXPECT_THAT(report["settings"]["mix"].get<std::string>(),
@@ -66,7 +73,8 @@ TEST_F(MixesCommand, SaysWhatIsWrong) {
         {{"render", "room.xml", "--set", "small-step.sigma=0.1"}, "it needs small-step.kernel=gaussian"},
         {{"render", "room.xml", "--set", "small-step.s1=0.5"}, "small-step: s1 = 0.5 is above s2 = 0.015625"},
         {{"render", "room.xml", "--set", "large-step.weight=0"}, "no strategy of positive weight reaches every path"},
-        {{"render", "room.xml", "--set", "rectification=retry"}, "come with a later version"},
+        {{"render", "room.xml", "--set", "walk-steps=3"},
+         "--set: walk-steps has no effect here; it needs rectification=walk-on"},
         {{"render", "room.xml", "--set", "lengths.per-chain=fixed", "--chains", "2"},
          "2 chains of fixed length are too"},
         {{"render", "room.xml", "-i", "path", "--set", "chains.count=5"},

@@ -74,27 +74,6 @@ TEST(Chain, NoticesAProposalThatIsNotSymmetric) {
               clear_failure);
 }
 
-// A second step about x after a failed first step to y1 is exact with the ratio f(y2) q1(y2, y1) / (f(x) q1(x, y1))
-// [Tierney and Mira 1999, Some adaptive Monte Carlo methods for Bayesian inference]. The chain only sees the outcome.
-template <bool with_first_stage_density>
-Proposal step_with_retry(double& x, double& y, Rng& random) {
-    constexpr double width = 0.4;
-    y = wrapped(x + draw_triangular(width, random));
-    if (interval_target(y) > 0) return symmetric_proposal(x, y);
-    const double failed = y;
-    y = wrapped(x + draw_triangular(width / 2, random));
-    Proposal second = symmetric_proposal(x, y);
-    if (with_first_stage_density)
-        second.ratio *=
-            triangular_pdf(wrapped_difference(y, failed), width) / triangular_pdf(wrapped_difference(x, failed), width);
-    return second;
-}
-
-TEST(Chain, TakesDelayedRejectionAsOneProposal) {
-    EXPECT_GT(p_value_on_interval(single(step_with_retry<true>), 16, 20), false_alarm);
-    EXPECT_LT(p_value_on_interval(single(step_with_retry<false>), 16, 20), clear_failure);
-}
-
 TEST(Chain, SplatsAreUnbiased) {
     // The weight that a cell gets in the steps of one chain from an exact start has the expectation steps * target.
     // Over independent chains its mean is normal to good approximation: one z-test for each cell.

@@ -12,7 +12,7 @@ namespace keyhole {
 namespace {
 
 constexpr double family_level = 1e-4;  // false alarms of this file, by Sidak over its chi-square tests
-constexpr int chi_square_tests = 4;
+constexpr int chi_square_tests = 6;
 
 template <class Kernel>
 class Kernels : public testing::Test {};
@@ -41,6 +41,40 @@ TYPED_TEST(Kernels, StepsAreSymmetric) {
     for (int i = 0; i < bins; ++i) {
         if (plus[i] + minus[i] < 20) continue;
         statistic += sqr(plus[i] - minus[i]) / (plus[i] + minus[i]);
+        ++degrees;
+    }
+    ASSERT_GT(degrees, 10);
+    EXPECT_GT(chi_square_tail(statistic, degrees), sidak_level(family_level, chi_square_tests));
+}
+
+// Steps from b, each weighted by q(a, y) / q(b, y), fall into bins as steps from a do, where b can reach all of a bin.
+TYPED_TEST(Kernels, RatiosOfDensitiesTurnStepsIntoThoseFromAnotherPoint) {
+    const TypeParam kernel = TypeParam().scaled(2);
+    Rng rng(4);
+    constexpr int n = lanes, bins = 1000, rounds = 200000;
+    std::vector<double> from_a(bins, 0.0), weighted(bins, 0.0), squares(bins, 0.0);
+    const double a = 0.999, b = 0.009;  // the torus' seam lies between them
+    double x[n], y[n];
+    for (int i = 0; i < rounds; ++i) {
+        std::fill_n(x, n, a);
+        kernel(x, y, n, rng);
+        for (const double u : y) ++from_a[static_cast<std::size_t>(u * bins)];
+        std::fill_n(x, n, b);
+        kernel(x, y, n, rng);
+        for (const double u : y) {
+            const double weight = kernel.density_ratio(&a, &b, &u, 1);
+            weighted[static_cast<std::size_t>(u * bins)] += weight;
+            squares[static_cast<std::size_t>(u * bins)] += weight * weight;
+        }
+    }
+    double statistic = 0;
+    int degrees = 0;
+    for (int i = 0; i < bins; ++i) {
+        bool reached = from_a[i] > 1000;
+        for (const double edge : {static_cast<double>(i) / bins, (i + 1.0) / bins, (i + 0.5) / bins})
+            reached = reached && kernel.density_ratio(&b, &b, &edge, 1) > 0;
+        if (!reached) continue;
+        statistic += sqr(from_a[i] - weighted[i]) / (from_a[i] + squares[i]);
         ++degrees;
     }
     ASSERT_GT(degrees, 10);

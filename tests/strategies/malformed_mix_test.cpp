@@ -72,7 +72,8 @@ const Malformed cases[] = {
     {"[@$]", "Error while parsing"},
     // the head
     head("@sed = 1",
-         "unknown key 'sed'; did you mean 'seed'? valid names: name, description, target, rectification, seed"),
+         "unknown key 'sed'; did you mean 'seed'? valid names: name, description, target, rectification, walk-steps, "
+         "retry-scale, "),
     head("seed = @-1", "'seed' cannot be -1; valid: an integer of at least 0"),
     head("seed = @1.5", "'seed' cannot be 1.5; valid: an integer of at least 0"),
     head("seed = @\"x\"", "'seed' cannot be \"x\"; valid: an integer"),
@@ -83,8 +84,9 @@ const Malformed cases[] = {
     head("target = @\"luminanse\"", "did you mean 'luminance'? valid names: luminance, max-channel"),
     head("target = @1", "'target' cannot be 1; valid: \"luminance\", \"max-channel\""),
     head("rectification = @\"of\"", "did you mean 'off'? valid names: off, exclude, walk-on, retry"),
-    head("rectification = @\"walk-on\"", "policies other than \"off\" come with a later version"),
-    head("rectification = @\"exclude\"", "policies other than \"off\" come with a later version"),
+    head("rectification = \"walk-on\"\nretry-scale = @0.5",
+         "'retry-scale' has no effect here; it needs rectification = \"retry\""),
+    head("walk-steps = @5", "'walk-steps' has no effect here; it needs rectification = \"walk-on\""),
     // tables
     head("lengths = @5", "'lengths' is a value; valid: a table [lengths]"),
     head("@[[chains]]\ncount = 5", "'chains' is a list; valid: a table [chains]"),

@@ -84,7 +84,7 @@ weight = 0.5
     EXPECT_EQ(mix.name, "odd");
     EXPECT_EQ(mix.description, "with \"quotes\"");
     EXPECT_EQ(mix.target, TargetFunction::max_channel);
-    EXPECT_EQ(mix.rectification, Rectification::off);
+    EXPECT_EQ(mix.rectification, RectificationSettings{});
     EXPECT_EQ(mix.seed, 9223372036854775807u);
     EXPECT_EQ(mix.lengths, (PathLengths{2, 7, true}));
     EXPECT_EQ(mix.chain_count, 12);
@@ -118,8 +118,8 @@ Mix random_mix(Rng& rng) {
         for (std::uint32_t i = rng.below(10); i > 0; --i) text += "a\"\\\n\t#'=]\x7f\xc3\xa9"[rng.below(10)];
         return text;
     };
-    for (const MixField& field : mix_fields())
-        if (field.key() != "rectification") field.set(mix, random_value(field.parameter));
+    for (const MixField& field : mix_fields()) field.set(mix, random_value(field.parameter));
+    settle_fields(mix);
     if (mix.lengths.max < mix.lengths.min) mix.lengths.max = 0;
     for (MixStrategy& s : mix.strategies) {
         s.weight = std::get<double>(random_value(weight_parameter()));
@@ -181,7 +181,7 @@ TEST(Settings, AreRefusedWithWhatIsValid) {
               "--set: small-step.sigma has no effect here; it needs small-step.kernel=gaussian");
     EXPECT_EQ(message("small-step.s1", "0.5"), "small-step: s1 = 0.5 is above s2 = 0.015625");
     EXPECT_THAT(message("large-step.weight", "0"), HasSubstr("reaches every path"));
-    EXPECT_THAT(message("rectification", "retry"), HasSubstr("later version"));
+    EXPECT_THAT(message("retry-scale", "0.5"), HasSubstr("it needs rectification=retry"));
 }
 
 TEST(Registry, EveryEntryIsDocumentedAndMakesItsStrategy) {
@@ -189,7 +189,7 @@ TEST(Registry, EveryEntryIsDocumentedAndMakesItsStrategy) {
     const CoordinateLayout layout(*scene, 5);
     ChartEvaluator evaluator(*scene, layout, {}, {.path = true, .forgets = true});
     const TechniqueDistribution techniques(1, 5);
-    const StrategyContext context{evaluator, &evaluator, techniques, {1, 5, false}};
+    const StrategyContext context{evaluator, &evaluator, techniques, {1, 5, false}, {}};
     for (const StrategyInfo& info : strategy_registry()) {
         EXPECT_EQ(&find_strategy(info.name), &info);
         EXPECT_NE(info.description, "");
