@@ -1,8 +1,8 @@
 # Checks that the includes between the folders of src/ follow the arrows of the architecture:
 #
-#   app -> compare -> render -> strategies -> inverse -> pss -> pathspace -> scene -> base
-#                       |           |
-#                       +---------> chain      (the standard library only)
+#   app -> experiments -> compare -> render -> strategies -> inverse -> pss -> pathspace -> scene -> base
+#                                      |           |
+#                                      +---------> chain      (the standard library only)
 #
 # A folder may include itself and whatever its arrows reach. Usage: cmake -DROOT=<folder of src/> -P check_includes.cmake
 cmake_policy(VERSION 3.25)
@@ -16,8 +16,9 @@ set(may_include_inverse pss ${may_include_pss})
 set(may_include_strategies inverse chain ${may_include_inverse})
 set(may_include_render strategies ${may_include_strategies})
 set(may_include_compare render ${may_include_render})
-set(may_include_app compare ${may_include_compare})
-set(folders base chain scene pathspace pss inverse strategies render compare app)
+set(may_include_experiments compare ${may_include_compare})
+set(may_include_app experiments ${may_include_experiments})
+set(folders base chain scene pathspace pss inverse strategies render compare experiments app)
 
 set(errors)
 set(files_read 0)

@@ -25,5 +25,6 @@ void add_mixes_command(CLI::App& keyhole, Runner& runner);
 void add_compare_command(CLI::App& keyhole, Runner& runner);
 void add_sweep_command(CLI::App& keyhole, Runner& runner);
 void add_roundtrip_command(CLI::App& keyhole, Runner& runner);
+void add_experiment_command(CLI::App& keyhole, Runner& runner);
 
 }  // namespace keyhole

@@ -77,6 +77,7 @@ int run(int argc, char** argv) {
     add_bench_command(keyhole, runner);
     add_mixes_command(keyhole, runner);
     add_roundtrip_command(keyhole, runner);
+    add_experiment_command(keyhole, runner);
     try {
         keyhole.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -23,7 +23,9 @@ inline std::uint64_t stream(StreamUse use, std::uint64_t index) {
 // light has more chains.
 inline constexpr std::size_t most_replicates = 16;
 inline std::size_t replicate_count(const Mix& mix) {
-    return std::min(most_replicates, static_cast<std::size_t>(mix.chain_count));
+    // Chains exchange paths inside of a replicate only.
+    const int chains = mix.exchange_every > 0 ? std::max(1, mix.chain_count / 2) : mix.chain_count;
+    return std::min(most_replicates, static_cast<std::size_t>(chains));
 }
 
 // How many of the largest estimates of b are kept, to see whether it rests on them.
