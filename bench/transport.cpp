@@ -59,20 +59,46 @@ void evaluate_chart(benchmark::State& state, const std::string& name) {
     for (auto _ : state) benchmark::DoNotOptimize(large.draw(drawn, rng));
 }
 
-// Steps of a mixture as `keyhole render` has it by default, with their splats.
+// A worker and chains of a built-in mix, as `keyhole render` has them.
+struct Run {
+    Run(const Scene& scene, const char* mix, int chain_count) : layout(scene, max_length), techniques(every_technique) {
+        settings.mutations_per_pixel = 1;
+        settings.mix = builtin_mix(mix);
+        settings.mix.lengths = {2, max_length};
+        settings.mix.chain_count = chain_count;
+        settings = resolve(scene, settings);
+        Bootstrap bootstrap = run_bootstrap(scene, layout, techniques, settings.mix);
+        chains = start_chains(bootstrap.groups, settings.mix.seed);
+        worker = std::make_unique<ChainWorker>(scene, layout, techniques, settings.mix, bootstrap.groups.size());
+    }
+    RenderSettings settings;
+    CoordinateLayout layout;
+    TechniqueDistribution techniques;
+    std::vector<RunningChain> chains;
+    std::unique_ptr<ChainWorker> worker;
+};
+
+// Steps of a mixture with their splats.
 void mutate(benchmark::State& state, const std::string& name) {
     const auto scene = load(name);
-    RenderSettings settings;
-    settings.mutations_per_pixel = 1;
-    settings.mix.lengths = {2, max_length};
-    settings.mix.chain_count = 1;
-    settings = resolve(*scene, settings);
-    const CoordinateLayout layout(*scene, max_length);
-    TechniqueDistribution techniques = every_technique;
-    Bootstrap bootstrap = run_bootstrap(*scene, layout, techniques, settings.mix);
-    auto chains = start_chains(bootstrap.groups, settings.mix.seed);
-    ChainWorker worker(*scene, layout, techniques, settings.mix, bootstrap.groups.size());
-    for (auto _ : state) worker.advance(chains.front(), 1);
+    Run run(*scene, "mmlt", 1);
+    for (auto _ : state) run.worker->advance(run.chains.front(), 1);
+}
+
+// Proposals of one strategy of the mix cmlt, from many states in equilibrium.
+void propose(benchmark::State& state, const std::string& name, const std::string& strategy) {
+    const auto scene = load(name);
+    Run run(*scene, "cmlt", 1024);
+    for (RunningChain& chain : run.chains) run.worker->advance(chain, 200);
+    std::size_t index = 0;
+    while (run.worker->mixture.strategy(index).name() != strategy) ++index;
+    PssState y = run.worker->evaluator->make_state();
+    Rng rng(1);
+    std::size_t i = 0;
+    for (auto _ : state) {
+        PssState& x = run.chains[i++ % run.chains.size()].chain.current();
+        benchmark::DoNotOptimize(run.worker->mixture.strategy(index).propose(x, y, rng));
+    }
 }
 
 const bool added = [] {
@@ -82,6 +108,8 @@ const bool added = [] {
         benchmark::RegisterBenchmark(("unoccluded/" + name).c_str(), cast<true>, name);
         benchmark::RegisterBenchmark(("chart_evaluate/" + name).c_str(), evaluate_chart, name);
         benchmark::RegisterBenchmark(("mutation/" + name).c_str(), mutate, name);
+        for (const std::string strategy : {"large-step", "small-step", "chart-swap"})
+            benchmark::RegisterBenchmark((strategy + "/" + name).c_str(), propose, name, strategy);
     }
     return true;
 }();

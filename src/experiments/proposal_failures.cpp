@@ -111,14 +111,13 @@ PlotPoint point(double x, const Estimate& e) {
 // reference that misses it would be taken for bias.
 nlohmann::json judge(const std::string& scene, const StoredRuns& runs, std::vector<PlotPanel>& panels,
                      std::string& text) {
-    PlotPanel variance{scene, "CPU-seconds", "variance (relative)", {}},
-        bias{scene, "CPU-seconds", "squared bias (relative)", {}};
+    PlotPanel panel{scene, "CPU-seconds", "variance (lines), squared bias (dashed), relative", {}};
     text += fmt::format("{}\n  {:<10}{:>34}{:>34}\n", scene, "at the end", "variance", "squared bias");
     nlohmann::json json;
     const std::vector<ComparedEntry> list = entries();
     for (std::size_t e = 0; e < list.size(); ++e) {
         const Pool reference = runs.reference_of(e);
-        PlotSeries v{list[e].name, {}}, b = v;
+        PlotSeries v{list[e].name, {}}, b{list[e].name, {}, true};
         for (const RunPart& part : runs.parts(e)) {
             const ErrorSplit split = split_error(runs.images(e, part.part), reference.mean, &reference.variance);
             const double x = runs.cpu_seconds(e, part.part);
@@ -134,11 +133,10 @@ nlohmann::json judge(const std::string& scene, const StoredRuns& runs, std::vect
         text += fmt::format("  {:<10}{:>34}{:>34}\n", v.name, figure(v.points.back()), figure(b.points.back()));
         // No point where it is not told from zero.
         std::erase_if(b.points, [](const PlotPoint& p) { return !(p.low > 0); });
-        variance.series.push_back(v);
-        bias.series.push_back(b);
+        panel.series.push_back(v);
+        panel.series.push_back(b);
     }
-    panels.push_back(variance);
-    panels.push_back(bias);
+    panels.push_back(panel);
     return json;
 }
 
