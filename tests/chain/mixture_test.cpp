@@ -46,13 +46,6 @@ Components with_varying_suitability() {
     return c;
 }
 
-// What a mixture would be that forgets the probability of choosing the strategy again for the way back.
-class ForgetfulMixture : public IntMixture {
-  public:
-    using IntMixture::Mixture;
-    double completed_ratio(double ratio, const Selection&, int) const { return ratio; }
-};
-
 template <class MixtureType>
 double p_value_of_reached_states(const MixtureType& mixture, std::uint64_t seed) {
     constexpr int chains = 100000, steps = 12;
@@ -75,35 +68,15 @@ TEST(Mixture, KeepsTheTargetWithVaryingSuitabilities) {
 }
 
 TEST(Mixture, WithoutTheReverseSelectionProbabilityTheTargetIsMissed) {
-    EXPECT_LT(p_value_of_reached_states(ForgetfulMixture(with_varying_suitability()), 2), clear_failure);
+    EXPECT_LT(p_value_of_reached_states(ForgetfulMixture<int>(with_varying_suitability()), 2), clear_failure);
 }
 
 TEST(Mixture, TransitionsAreInDetailedBalance) {
-    // n_xy and n_yx over independent chains are binomial with 1/2 given their sum, so the sum over all pairs of
-    // (n_xy - n_yx)^2 / (n_xy + n_yx) is chi-square distributed.
-    const IntMixture mixture(with_varying_suitability());
-    std::vector<double> counts(states * states);
-    Diagnostics diagnostics(mixture.size());
-    NoFilm film;
-    for (std::uint64_t i = 0; i < 200000; ++i) {
-        Rng random(3, i);
-        Chain<int> chain(static_cast<int>(draw(target, random)));
-        const int before = chain.current();
-        chain.step(mixture, random, film, diagnostics);
-        ++counts[static_cast<std::size_t>(before * states + chain.current())];
-    }
-    int pairs = 0;
-    double statistic = 0;
-    for (std::size_t x = 0; x < states; ++x) {
-        for (std::size_t y = 0; y < x; ++y) {
-            const double there = counts[x * states + y], back = counts[y * states + x];
-            if (there + back < 20) continue;
-            statistic += (there - back) * (there - back) / (there + back);
-            ++pairs;
-        }
-    }
-    EXPECT_GE(pairs, 20);
-    EXPECT_GT(chi_square_tail(statistic, pairs), false_alarm);
+    const FlowBalance balance = flow_balance<int>(
+        IntMixture(with_varying_suitability()), [](Rng& random) { return static_cast<int>(draw(target, random)); },
+        200000, 3, states, [](int x) { return static_cast<std::size_t>(x); });
+    EXPECT_GE(balance.pairs, 20);
+    EXPECT_GT(chi_square_tail(balance.statistic, balance.pairs), false_alarm);
 }
 
 TEST(Mixture, SelectsWithTheProbabilitiesThatItReports) {

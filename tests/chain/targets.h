@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -66,22 +67,69 @@ struct Histogram {
     void splat(const State& state, double weight) { weights[cell(state)] += weight; }
 };
 
-// Counts in `reached` where `chains` independent chains are after `steps` steps. `start` draws from the exact target.
+// Counts in `reached` where `chains` independent chains are after `steps` steps. `start` draws from the exact target,
+// and `complete` what the last state leaves open.
 template <class State, class MixtureType>
 void run_chains(const MixtureType& mixture, const std::function<State(Rng&)>& start, int chains, int steps,
-                std::uint64_t seed, Histogram<State>& reached) {
+                std::uint64_t seed, Histogram<State>& reached, const std::function<void(State&, Rng&)>& complete = {}) {
     Diagnostics diagnostics(mixture.size());
     NoFilm film;
     for (int i = 0; i < chains; ++i) {
         Rng random(seed, static_cast<std::uint64_t>(i));
         Chain<State> chain(start(random));
         for (int n = 0; n < steps; ++n) chain.step(mixture, random, film, diagnostics);
+        if (complete) complete(chain.current(), random);
         reached.splat(chain.current(), 1);
     }
 }
 
+// What a mixture would be that forgets the probability of choosing the strategy again for the way back.
+template <class State>
+class ForgetfulMixture : public Mixture<State, Rng> {
+  public:
+    using Mixture<State, Rng>::Mixture;
+    double completed_ratio(double ratio, const typename Mixture<State, Rng>::Selection&, const State&) const {
+        return ratio;
+    }
+};
+
+// Detailed balance: how far the flows between cells of single steps from the exact target differ in their two
+// directions. n_xy and n_yx over independent chains are binomial with 1/2 given their sum, so the sum over all pairs of
+// (n_xy - n_yx)^2 / (n_xy + n_yx) is chi-square distributed.
+struct FlowBalance {
+    int pairs = 0;  // of cells with enough flow
+    double statistic = 0;
+};
+
+template <class State, class MixtureType>
+FlowBalance flow_balance(const MixtureType& mixture, const std::function<State(Rng&)>& start, int chains,
+                         std::uint64_t seed, std::size_t cells, const std::function<std::size_t(const State&)>& cell,
+                         const std::function<void(State&, Rng&)>& complete = {}) {
+    std::vector<double> counts(cells * cells);
+    Diagnostics diagnostics(mixture.size());
+    NoFilm film;
+    for (int i = 0; i < chains; ++i) {
+        Rng random(seed, static_cast<std::uint64_t>(i));
+        Chain<State> chain(start(random));
+        const std::size_t before = cell(chain.current());
+        chain.step(mixture, random, film, diagnostics);
+        if (complete) complete(chain.current(), random);
+        ++counts[before * cells + cell(chain.current())];
+    }
+    FlowBalance balance;
+    for (std::size_t x = 0; x < cells; ++x) {
+        for (std::size_t y = 0; y < x; ++y) {
+            const double there = counts[x * cells + y], back = counts[y * cells + x];
+            if (there + back < 20) continue;
+            balance.statistic += (there - back) * (there - back) / (there + back);
+            ++balance.pairs;
+        }
+    }
+    return balance;
+}
+
 // Draws an index with the given probabilities (they sum to one).
-inline std::size_t draw(const std::vector<double>& probabilities, Rng& random) {
+inline std::size_t draw(std::span<const double> probabilities, Rng& random) {
     double u = random.uniform();
     for (std::size_t i = 0; i + 1 < probabilities.size(); ++i) {
         if (u < probabilities[i]) return i;
