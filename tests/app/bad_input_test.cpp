@@ -56,7 +56,7 @@ TEST_F(BadInput, OptionsAreRefusedWithWhatIsValid) {
         {{"render", "room.xml", "-q", "-v"}, "excludes"},
         {{"render", "room.xml", "-o", "a.jpg"}, "'a.jpg' has the unknown extension '.jpg'; valid extensions: .exr"},
         {{"render", "room.xml", "-o", "a"}, "'a' has no extension; valid extensions: .exr"},
-        {{"render", "room.xml", "--mix", ""}, "valid names: mmlt"},
+        {{"render", "room.xml", "--mix", ""}, "valid names: cmlt, "},
         {{"render", ""}, "SCENE is required"},
         {{"render", "."}, "'.' is not a file"},
         {{"info", "/dev/null"}, "'/dev/null' is not a file"},
