@@ -1,7 +1,6 @@
 // A Metropolis-Hastings chain. It knows its states only through the strategies that propose them.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -85,7 +84,7 @@ class Chain {
         outcome.acceptance = acceptance(proposal);
         outcome.failure = proposal.failure;
         outcome.first_failure = proposal.first_failure;
-        if (excludes_failures && outcome.failure != Failure::none) {
+        if (excludes_failures && lacks_contribution(outcome.failure)) {
             outcome.excluded = true;
             diagnostics.strategies[selection.index].exclude(outcome.failure);
             return outcome;

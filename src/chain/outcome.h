@@ -33,13 +33,15 @@ inline constexpr std::size_t failure_kinds = failure_names.size();
 
 inline std::string_view failure_name(Failure failure) { return failure_names[static_cast<std::size_t>(failure)]; }
 
+// Whether there is a proposed state, which contributes nothing or may not be moved to.
+inline bool lacks_contribution(Failure failure) { return failure != Failure::none && failure != Failure::unchanged; }
+
 // A proposed state's Metropolis-Hastings ratio, pi(y) q(y -> x) / (pi(x) q(x -> y)), without the probabilities of
 // choosing the strategy, which the mixture adds. In [0, inf); above one it is accepted for sure.
 struct Proposal {
     double ratio = 0;
-    Failure failure = Failure::none;  // other than `none`: there is no proposed state, and the ratio is not read
-    Failure first_failure =
-        Failure::none;  // other than `none`: of the first stage; this is the outcome of a second one
+    Failure failure = Failure::none;        // other than `none`: there is no proposed state, and the ratio is not read
+    Failure first_failure = Failure::none;  // other than `none`: a first stage failed, and this is of a second one
 
     static Proposal failed(Failure failure) { return {0, failure}; }
 };

@@ -59,12 +59,8 @@ std::vector<Algorithm> algorithms() {
 // b. (With f / p_1 alone as the target, as PSSMLT-1 has it, such estimates have no finite variance: where light and
 // plane meet, f / p_1 grows without bound.)
 double rmse(Image image, const Reference& reference) {
-    const auto mean = [](const Image& i) {
-        double sum = 0;
-        for (std::size_t p = 0; p + 2 < i.rgb.size(); p += 3) sum += luminance({i.rgb[p], i.rgb[p + 1], i.rgb[p + 2]});
-        return sum;
-    };
-    const auto scale = static_cast<float>(mean(reference.image) / mean(image));
+    const ErrorMetrics unscaled = compare_images(image, reference.image);
+    const auto scale = static_cast<float>(luminance(unscaled.mean_reference) / luminance(unscaled.mean));
     for (float& v : image.rgb) v *= scale;
     const double mse = compare_images(image, reference.image).mse;
     double noise = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "chain/running_mean.h"
 #include "compare/comparison.h"
 #include "compare/error_split.h"
 #include "compare/run_store.h"
@@ -42,13 +43,11 @@ struct Pool {
 
 Pool pool(const std::vector<Image>& images) {
     Pool result{images.front(), images.front()};
-    const double n = static_cast<double>(images.size());
     for (std::size_t i = 0; i < result.mean.rgb.size(); ++i) {
-        double m = 0, v = 0;
-        for (const Image& image : images) m += static_cast<double>(image.rgb[i]) / n;
-        for (const Image& image : images) v += sqr(static_cast<double>(image.rgb[i]) - m) / (n - 1);
-        result.mean.rgb[i] = static_cast<float>(m);
-        result.variance.rgb[i] = static_cast<float>(v / n);
+        RunningMean value;
+        for (const Image& image : images) value.add(static_cast<double>(image.rgb[i]));
+        result.mean.rgb[i] = static_cast<float>(value.mean());
+        result.variance.rgb[i] = static_cast<float>(sqr(value.standard_error()));
     }
     return result;
 }

@@ -18,7 +18,7 @@ void Exchanges::pair_up(std::vector<std::uint32_t>& cell, const std::vector<Runn
     std::sort(cell.begin(), cell.end());
     for (std::size_t i = cell.size(); i > 1; --i)
         std::swap(cell[i - 1], cell[rng.below(static_cast<std::uint32_t>(i))]);
-    std::stable_sort(cell.begin(), cell.end(), [&](std::uint32_t a, std::uint32_t b) {
+    std::sort(cell.begin(), cell.end(), [&](std::uint32_t a, std::uint32_t b) {
         return chains[a].chain.current().u.k < chains[b].chain.current().u.k;
     });
 }

@@ -1,5 +1,7 @@
 #include "strategies/chart_evaluator.h"
 
+#include "strategies/technique_distribution.h"
+
 namespace keyhole {
 
 ChartEvaluator::ChartEvaluator(const Scene& scene, const CoordinateLayout& layout, const ChartTarget& target,
@@ -42,15 +44,9 @@ bool ChartEvaluator::go_over(PssState& x, int t, PssState& y, Rng& rng) {
 bool ChartEvaluator::find_technique(PssState& x, Rng& rng) {
     if (x.known != Known::path) return true;
     const std::span<const double> w = weights(x);
-    double left = rng.uniform();
-    int chosen = x.path.t;
-    for (int t = 1; t <= x.path.k + 1; ++t) {
-        if (!(w[t - 1] > 0)) continue;
-        chosen = t;
-        left -= w[t - 1];
-        if (left < 0) break;
-    }
-    x.u.t = chosen;
+    x.u.t = draw_index(
+                x.path.k + 1, 1, [&](int i) { return w[i]; }, rng) +
+            1;
     x.known = Known::technique;
     x.inverse_exists = false;
     return true;

@@ -21,9 +21,6 @@ class InverseSmallStep final : public PssStrategy {
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
   private:
-    // Q(x).
-    double possible(int k, std::span<const double> weights) const;
-
     ChartEvaluator& charts_;
     const TechniqueDistribution& techniques_;
     Kernel kernel_;

@@ -2,6 +2,7 @@
 // E(k, t) = integral of w_t f* that the bootstrap measured, before the first counted mutation.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pathspace/connect.h"
@@ -68,6 +69,23 @@ class TechniqueDistribution {
     std::vector<int> choices_;  // by k: techniques of the set
     bool has_choice_everywhere_ = true;
     std::vector<double> prior_, p_, cumulative_, length_p_;
+};
+
+// q(t | k) of the techniques that can make a path, those with a weight above zero; 0 for the others.
+struct PossibleTechniques {
+    const TechniqueDistribution& techniques;
+    std::span<const double> weights;  // of the path's k + 1 techniques, at t - 1
+
+    int count() const { return static_cast<int>(weights.size()); }
+    // At t - 1.
+    double operator()(int i) const {
+        return weights[i] > 0 ? techniques.probability_given_length(count() - 1, i + 1) : 0;
+    }
+    double sum() const {
+        double sum = 0;
+        for (int i = 0; i < count(); ++i) sum += (*this)(i);
+        return sum;
+    }
 };
 
 }  // namespace keyhole

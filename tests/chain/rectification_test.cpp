@@ -146,6 +146,18 @@ TEST(Rectification, ExcludedProposalsHaveNoWeight) {
     EXPECT_EQ(diagnostics.strategies[0].excluded, 10u);
 }
 
+// The current state itself is no failure: leaving it out would bias even where everything contributes.
+TEST(Rectification, ProposalsThatAreTheStateItselfCount) {
+    const RealMixture mixture = only([](double&, double&, Rng&) { return Proposal::failed(Failure::unchanged); });
+    Rng random(50, 0);
+    Diagnostics diagnostics(1);
+    NoFilm film;
+    Chain<double> chain(0.3);
+    EXPECT_FALSE(chain.step(mixture, random, film, diagnostics, true).excluded);
+    EXPECT_EQ(chain.held(), 1);
+    EXPECT_EQ(diagnostics.strategies[0].excluded, 0u);
+}
+
 TEST(Rectification, StagesAreCountedApart) {
     int calls = 0;
     const auto propose = [&](double&, double& y, Rng&) {
