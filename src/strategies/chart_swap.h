@@ -2,7 +2,9 @@
 // 2017]. The re-traced path is what is accepted; it differs from x by rounding.
 //
 // A path that the inverse of t' fails at cannot be left towards t', and one that the inverse of t fails at cannot be
-// left from t, since the way back would be missing (theory, section 4).
+// left from t, since the way back would be missing (theory, section 4). Known limit: for t it is asked whether any inverse
+// exists, not whether the one does that has the branches of the current coordinates. Where some branches of a path fail
+// and others do not, that is not exact (tests/chain/branch_charts_test.cpp); `keyhole roundtrip` counts failures.
 #pragma once
 
 #include "strategies/chart_evaluator.h"
