@@ -1,6 +1,7 @@
 #include "scene/scene_builder.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/scene_parts.h"
@@ -78,11 +79,8 @@ void SceneBuilder::add_instance(const std::string& group_id, const Affine& to_wo
 }
 
 void SceneBuilder::add_emitter(std::unique_ptr<Emitter> emitter) {
-    for (const auto& other : parts_->emitters) {
-        if (other->traits().environment && emitter->traits().environment) {
-            throw std::invalid_argument("a scene can have only one environment emitter");
-        }
-    }
+    if (emitter->traits().environment && std::exchange(parts_->has_environment, true))
+        throw std::invalid_argument("a scene can have only one environment emitter");
     parts_->emitters.push_back(std::move(emitter));
 }
 

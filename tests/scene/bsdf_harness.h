@@ -71,6 +71,18 @@ testing::AssertionResult inverse_gives_the_sample(const BsdfCase& c);
 // samples over the cube of the three numbers, at bsdf_test_level. Seen red with lobes drawn by their probabilities alone.
 testing::AssertionResult inverse_numbers_are_uniform(const BsdfCase& c);
 
+// pdf is the sum over the smooth branches of c_l / |dw/du|, by finite differences (1e-3), and `invert` chooses each in
+// its share of that sum, the posterior (2/128). Seen red with lobes drawn by their probabilities alone.
+testing::AssertionResult densities_of_the_branches(const BsdfCase& c);
+
+// Directions that no sample gave, on both sides, among them mirrored and straight ones: where the density is zero there
+// is no smooth inverse; elsewhere there is one that gives the direction back, to 1e-6 of the lobe's width; only at
+// densities below 1e-8, far in a tail, there may be none. Never a delta lobe in its place.
+testing::AssertionResult inverts_any_direction(const BsdfCase& c);
+
+// Samples at both ends of [0, 1) have inverses in [0, 1), or none; never NaN, never 1.
+testing::AssertionResult inverse_survives_borders(const BsdfCase& c);
+
 // The lobe number chooses the lobe and nothing else; without `chooses_lobe` it has no effect at all.
 testing::AssertionResult lobe_number_only_chooses(const BsdfCase& c);
 

@@ -16,6 +16,9 @@ TEST_P(BsdfTest, ConservesEnergy) { EXPECT_TRUE(conserves_energy(GetParam())); }
 TEST_P(BsdfTest, SurvivesExtremes) { EXPECT_TRUE(survives_extremes(GetParam())); }
 TEST_P(BsdfTest, InverseGivesTheSample) { EXPECT_TRUE(inverse_gives_the_sample(GetParam())); }
 TEST_P(BsdfTest, InverseNumbersAreUniform) { EXPECT_TRUE(inverse_numbers_are_uniform(GetParam())); }
+TEST_P(BsdfTest, DensitiesOfTheBranches) { EXPECT_TRUE(densities_of_the_branches(GetParam())); }
+TEST_P(BsdfTest, InvertsAnyDirection) { EXPECT_TRUE(inverts_any_direction(GetParam())); }
+TEST_P(BsdfTest, InverseSurvivesBorders) { EXPECT_TRUE(inverse_survives_borders(GetParam())); }
 TEST_P(BsdfTest, LobeNumberOnlyChooses) { EXPECT_TRUE(lobe_number_only_chooses(GetParam())); }
 
 }  // namespace keyhole

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "base/rng.h"
+#include "base/warp.h"
 #include "bsdf_harness.h"
 #include "statistics.h"
 
@@ -113,6 +114,61 @@ testing::AssertionResult inverse_numbers_are_uniform(const BsdfCase& c) {
         }
         const double p = Histogram::p_value(numbers, inverted);
         if (p < bsdf_test_level()) return failure(known, mode) << "p = " << p;
+        return testing::AssertionSuccess();
+    });
+}
+
+testing::AssertionResult inverts_any_direction(const BsdfCase& c) {
+    return for_all([&](const Vec3& known, Mode mode, Rng rng) -> testing::AssertionResult {
+        std::vector<Vec3> directions = known_directions();
+        for (const double side : {1.0, -1.0}) directions.emplace_back(-known.x(), -known.y(), side * known.z());
+        directions.emplace_back(known);
+        for (int i = 0; i < 400; ++i) {
+            const double u = rng.uniform();
+            directions.push_back(square_to_sphere({u, rng.uniform()}));
+        }
+        int failed = 0;
+        for (const Vec3& w : directions) {
+            const BsdfValue value = mode == Mode::eye ? c.bsdf->eval(c.x, known, w) : c.bsdf->eval(c.x, w, known);
+            const double pdf = mode == Mode::eye ? value.pdf_light : value.pdf_eye;
+            const auto n = c.bsdf->invert(c.x, known, w, {}, fresh_numbers(rng), mode);
+            if (!(pdf > 0)) {
+                if (n) return failure(known, mode) << "an inverse of (" << w.transpose() << "), of density zero";
+                continue;
+            }
+            if (!n) {
+                failed += pdf > 1e-8;
+                continue;
+            }
+            for (const double u : {n->lobe, n->direction.x(), n->direction.y()})
+                if (!(u >= 0 && u < 1)) return failure(known, mode) << "the number " << u;
+            const auto again = c.bsdf->sample(c.x, known, n->lobe, n->direction, mode);
+            if (again && again->delta) return failure(known, mode) << "a delta lobe for (" << w.transpose() << ")";
+            // Of a density below 1e-8, far in the tail, there may be no numbers left between a value and one.
+            const double error = again ? (again->w - w).norm() * std::sqrt(std::max(1.0, pdf)) : 1e300;
+            if (!(error < 1e-6) && pdf > 1e-8) ++failed;
+        }
+        if (failed > 0) return failure(known, mode) << failed << " directions do not come back";
+        return testing::AssertionSuccess();
+    });
+}
+
+testing::AssertionResult inverse_survives_borders(const BsdfCase& c) {
+    const std::array numbers = {0.0, 0x1p-53, 0.25, 0.5, one_minus_epsilon};
+    return for_all([&](const Vec3& known, Mode mode, Rng) -> testing::AssertionResult {
+        for (const double u_lobe : numbers)
+            for (const double u1 : numbers)
+                for (const double u2 : numbers)
+                    for (const double v : {0.0, one_minus_epsilon}) {
+                        const auto s = c.bsdf->sample(c.x, known, u_lobe, {u1, u2}, mode);
+                        if (!s) continue;
+                        const auto n = c.bsdf->invert(c.x, known, s->w, {s->delta, s->lobe}, {v, v, {v, v}}, mode);
+                        if (!n) continue;
+                        for (const double u : {n->lobe, n->direction.x(), n->direction.y()})
+                            if (!(u >= 0 && u < 1))
+                                return failure(known, mode) << "the number " << u << " of the sample of (" << u_lobe
+                                                            << ", " << u1 << ", " << u2 << ")";
+                    }
         return testing::AssertionSuccess();
     });
 }

@@ -236,5 +236,38 @@ TEST(Microfacet, FacetReflectionIsTheHalfVectorForm) {
     EXPECT_NEAR(r.value, microfacet.density(m) * g / (4 * eye.z() * light.z()), 1e-12);
 }
 
+// u -> m -> u' on the torus. Rounding moves m by about epsilon, and u by epsilon over the smallest singular value of
+// dm/du, which finite differences give, as well as by the epsilon of its own last digit times what the view direction's
+// own rounding is worth there.
+TEST(VisibleNormals, ComeBackToTheirNumbers) {
+    Rng rng(8, 1);
+    double worst = 0;
+    for (const MicrofacetType type : {MicrofacetType::ggx, MicrofacetType::beckmann})
+        for (const double alpha : {1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0})
+            for (const double degrees : {0.0, 1.0, 45.0, 80.0, 89.0, 89.9, 89.99}) {
+                const Microfacet microfacet(type, alpha, alpha);
+                const Vec3 w = direction(std::cos(degrees * pi / 180), 0.3);
+                for (int i = 0; i < 1000; ++i) {
+                    const double u1 = 0.001 + 0.998 * rng.uniform();
+                    const Vec2 u{u1, 0.001 + 0.998 * rng.uniform()};
+                    const Vec3 m = microfacet.sample_visible(w, u);
+                    const Vec2 back = microfacet.visible_to_square(w, m);
+                    constexpr double h = 1e-6;
+                    const Vec3 d1 = (microfacet.sample_visible(w, u + Vec2(h, 0)) - m) / h,
+                               d2 = (microfacet.sample_visible(w, u + Vec2(0, h)) - m) / h;
+                    // Area over the largest singular value, which the longer of the columns is within sqrt(2) of.
+                    const double least = d1.cross(d2).norm() / std::max(d1.norm(), d2.norm());
+                    const auto torus = [](double a) { return std::min(std::abs(a), 1 - std::abs(a)); };
+                    const double error = std::hypot(torus(back.x() - u.x()), torus(back.y() - u.y()));
+                    const double bound = 0x1p-53 * (1 + 1 / least);
+                    worst = std::max(worst, error / bound);
+                    ASSERT_LE(error, 100 * bound)
+                        << Case{type, alpha, alpha} << " at " << degrees << " degrees, u = " << u.transpose()
+                        << ", least singular value " << least;
+                }
+            }
+    std::cout << "worst error " << worst << " times epsilon and condition\n";
+}
+
 }  // namespace
 }  // namespace keyhole

@@ -48,6 +48,24 @@ TEST(EmitterChoice, IsByPower) {
     EXPECT_EQ(scene->choose_emitter(one_minus_epsilon), 5U);
 }
 
+// Each has an interval of numbers of its own, down to powers of 1e-9 of the largest; its inverse stays within.
+TEST(EmitterChoice, AmongAMillion) {
+    SceneBuilder builder;
+    constexpr std::uint32_t lights = 1000000;
+    for (std::uint32_t i = 0; i < lights; ++i) builder.add_emitter(point(i % 1000 == 7 ? 1e-9 : 1 + i % 10));
+    const auto scene = build_with_sensor(builder);
+    double sum = 0;
+    for (const Emitter* emitter : scene->emitters()) {
+        sum += emitter->selection_probability();
+        for (const double place : {0.0, 0.37, one_minus_epsilon}) {
+            const double u = scene->invert_choice(*emitter, place);
+            ASSERT_TRUE(u >= 0 && u < 1) << u;
+            ASSERT_EQ(scene->choose_emitter(u), emitter->index()) << "at " << place;
+        }
+    }
+    EXPECT_NEAR(sum, 1, 1e-9);
+}
+
 TEST(EmitterChoice, OfOneAndOfBlackEmitters) {
     SceneBuilder one, black;
     one.add_emitter(point(3));

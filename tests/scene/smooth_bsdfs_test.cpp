@@ -35,6 +35,12 @@ std::vector<BsdfCase> cases() {
          .bsdf = make_dielectric(1, white, white),
          .lossless_front = true,
          .lossless_back = true},
+        // A reflectance of 1e-9.
+        {.name = "dielectric_nearly_matched",
+         .bsdf = make_dielectric(1 + 6.3e-5, white, white),
+         .eta = 1 + 6.3e-5,
+         .lossless_front = true,
+         .lossless_back = true},
         {.name = "dielectric_tinted", .bsdf = make_dielectric(1.5, gray(0.2), Spectrum(0.9, 0.5, 0.1)), .eta = 1.5},
         {.name = "dielectric_opaque", .bsdf = make_dielectric(1.5, white, gray(0)), .eta = 1.5},
         {.name = "thin_dielectric",
@@ -66,6 +72,9 @@ std::vector<BsdfCase> cases() {
          .lossless_back = true},
         {.name = "blend", .bsdf = make_blend(glossy_phong(), lambert, 0.25)},
         {.name = "blend_delta_and_smooth", .bsdf = make_blend(plastic, glass, half()), .eta = 1.5},
+        // A narrow smooth lobe around a delta lobe.
+        {.name = "blend_mirror_and_narrow",
+         .bsdf = make_blend(mirror, make_rough_conductor(MicrofacetType::ggx, 1e-3, 1e-3, {}, white), 0.5)},
         {.name = "blend_nested",
          .bsdf = make_blend(make_blend(white_wall, mirror, 0.5), make_mask(white_wall, 0.6), 1.0 / 3),
          .lossless_front = true},
@@ -85,6 +94,41 @@ std::vector<BsdfCase> cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Smooth, BsdfTest, testing::ValuesIn(cases()), bsdf_case_name);
+
+// Reflectances of 0, 1e-9, 1 - 1e-9 and 1: both events are found again from numbers at either end of their intervals,
+// and one that cannot happen has no inverse.
+TEST(DielectricChoice, IsInvertedAtExtremeReflectances) {
+    struct Extreme {
+        double eta, cos;
+        bool reflects, transmits;
+    };
+    for (const Extreme& e :
+         {Extreme{1, 0.7, false, true}, Extreme{1 + 6.3e-5, 1, true, true}, Extreme{1.5, 2e-10, true, true},
+          Extreme{1.5, 1e-13, true, true}, Extreme{1 / 1.5, 0.5, true, false}, Extreme{1 / 1.5, 1e-300, true, false}}) {
+        const BsdfPtr glass = make_dielectric(e.eta, white, white);
+        const Vec3 known(std::sqrt((1 - e.cos) * (1 + e.cos)), 0, e.cos);
+        for (const Mode mode : {Mode::eye, Mode::light})
+            for (const bool reflected : {true, false}) {
+                std::uint8_t lobe = 0;
+                bool seen = false;
+                for (const double u : {0.0, one_minus_epsilon, 0.5, 1e-10}) {
+                    const auto s = glass->sample(flat_point(), known, u, {0.5, 0.5}, mode);
+                    ASSERT_TRUE(s && s->delta);
+                    if ((s->w.z() > 0) != reflected) continue;
+                    seen = true;
+                    lobe = s->lobe;
+                    for (const double place : {0.0, 0.3, one_minus_epsilon}) {
+                        const auto n =
+                            glass->invert(flat_point(), known, s->w, {true, lobe}, {0.5, place, {0.5, 0.5}}, mode);
+                        ASSERT_TRUE(n);
+                        const auto again = glass->sample(flat_point(), known, n->lobe, {0.5, 0.5}, mode);
+                        ASSERT_TRUE(again && again->lobe == lobe && again->w == s->w) << e.eta << ", " << e.cos;
+                    }
+                }
+                EXPECT_EQ(seen, reflected ? e.reflects : e.transmits) << e.eta << ", " << e.cos << ", " << reflected;
+            }
+    }
+}
 
 }  // namespace
 }  // namespace keyhole

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "closed_room.h"
 #include "own_scenes.h"
 #include "statistics.h"
 #include "strategies/chart_exchange.h"
@@ -180,6 +181,45 @@ TEST_P(Exchanges, KeepThePathsOfEachTechnique) {
     for (const auto& [technique, change] : changes)
         EXPECT_LT(std::abs(change.first) / std::sqrt(change.second), bound)
             << "k " << technique.first << ", t " << technique.second;
+}
+
+// Paths of 64 edges through 1e5 accepted swaps and Gibbs moves: no overflow, and the path drifts by no more than
+// rounding adds up to, as each re-traced path is the next one's start.
+TEST(LongPaths, SurviveManyMovesBetweenCharts) {
+    constexpr int length = 64, wanted = 100000;
+    const auto scene = closed_room();
+    const CoordinateLayout layout(*scene, length);
+    ChartEvaluator evaluator(*scene, layout, {}, {.path = true, .forgets = true});
+    const TechniqueDistribution techniques(length, length);
+    const LargeStep large(evaluator, techniques);
+    const ChartSwap swap(evaluator, techniques);
+    const ChartGibbs gibbs(evaluator, techniques);
+    PssState x = evaluator.make_state(), y = evaluator.make_state();
+    Rng rng(4, 1);
+    int tries = 0;
+    do large.draw(x, rng);
+    while (!(x.target > 0) && ++tries < 1000000);
+    ASSERT_GT(x.target, 0);
+    const Path first = join(x.path.eye(), x.path.light());
+    const double target = x.target;
+    int accepted = 0, refused = 0;
+    while (accepted < wanted && refused < 20 * wanted) {
+        const PssStrategy& move = rng.below(2) == 0 ? static_cast<const PssStrategy&>(swap) : gibbs;
+        const Proposal p = move.propose(x, y, rng);
+        ASSERT_TRUE(p.failure != Failure::none || std::isfinite(p.ratio));
+        if (p.failure != Failure::none || !(rng.uniform() < p.ratio)) {
+            ++refused;
+            continue;
+        }
+        std::swap(x, y);
+        ++accepted;
+    }
+    EXPECT_EQ(accepted, wanted) << refused << " were refused";
+    const double drift = deviation(x.path, first.x);
+    std::cout << "after " << accepted << " moves, of " << accepted + refused << " tries, the path is off by " << drift
+              << "\n";
+    EXPECT_LT(drift, 1e-2);
+    EXPECT_NEAR(x.target / target, 1, 0.1);
 }
 
 std::vector<TransportCase> cases() {

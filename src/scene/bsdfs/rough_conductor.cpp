@@ -39,7 +39,10 @@ class RoughConductor final : public Bsdf {
     std::optional<BsdfNumbers> invert(const SurfacePoint& x, const Vec3& w_known, const Vec3& w, const BsdfEvent& event,
                                       const InverseNumbers& v, Mode) const override {
         if (event.delta || !(w_known.z() > 0 && w.z() > 0)) return {};
-        return BsdfNumbers{v.place, roughness_.at(x.uv).visible_to_square(w_known, (w_known + w).normalized())};
+        const Microfacet microfacet = roughness_.at(x.uv);
+        const Vec3 m = (w_known + w).normalized();
+        if (!(microfacet.density(m) > 0)) return {};
+        return BsdfNumbers{v.place, microfacet.visible_to_square(w_known, m)};
     }
 
     const char* name() const override { return "roughconductor"; }

@@ -76,10 +76,11 @@ class RoughDielectric final : public Bsdf {
         const Vec3 h = sides > 0 ? Vec3(w_known + w) : Vec3(w_known + eta * w);
         const Vec3 m = h * (std::copysign(1.0, h.z()) / h.norm());
         const double cos_m = std::min(above.dot(m), 1.0);
-        if (!(cos_m > 0)) return {};
+        if (!(cos_m > 0) || !(std::copysign(1.0, w.z()) * w.dot(m) > 0)) return {};
         const double p = fresnel_dielectric(cos_m, eta).reflectance;
-        if (!((sides > 0 ? p : 1 - p) > 0)) return {};
-        return BsdfNumbers{lobe_number(sides > 0, p, v.place), roughness_.at(x.uv).visible_to_square(above, m)};
+        const Microfacet microfacet = roughness_.at(x.uv);
+        if (!((sides > 0 ? p : 1 - p) > 0 && microfacet.density(m) > 0)) return {};
+        return BsdfNumbers{lobe_number(sides > 0, p, v.place), microfacet.visible_to_square(above, m)};
     }
 
     const char* name() const override { return "roughdielectric"; }
