@@ -4,15 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "pathspace/neighbours.h"
 #include "pathspace/path.h"
 
 namespace keyhole {
 namespace {
-
-// Unit direction from a surface vertex to any other.
-Vec3 direction(const Vertex& from, const Vertex& to) {
-    return to.infinite ? to.x.p : Vec3((to.x.p - from.x.p).normalized());
-}
 
 // Writes the numbers by which `v` draws the direction to `next`.
 bool invert_vertex(const CoordinateLayout& layout, const Vertex& prev, const Vertex& v, const Vertex& next, Mode mode,

@@ -7,8 +7,6 @@
 namespace keyhole {
 namespace {
 
-bool connectable(const Vertex& v) { return v.x.bsdf && v.x.bsdf->traits().smooth; }
-
 // The BSDF at a subpath's last vertex towards unit `d`. `f` includes the cosine: |ns.w_light| at an eye vertex, and at
 // a light vertex |ns.w_light| / |ng.w_light| |ng.w_eye| (shading normals [Veach 1997, 5.3.2]).
 struct End {
@@ -51,6 +49,23 @@ struct Edge {
     }
 };
 
+// The shadow rays of the three kinds of edges: from a surface to the sensor, to an emitter's point and to a surface. A
+// sensor or a point light lies on no surface, so that no error counts there.
+bool sensor_sees(Tracer& tracer, const SensorView& view, const Vertex& x0, const Vertex& y, const Edge& edge) {
+    const double inverse_length = x0.infinite ? 1 / (view.o - y.x.p).norm() : edge.inverse_length;
+    return tracer.visible(Scene::offset_origin(y.x, edge.d), view.o, inverse_length);
+}
+bool emitter_seen(Tracer& tracer, const Vertex& x, const Vertex& y, const Edge& edge) {
+    const Vec3 o = Scene::offset_origin(x.x, edge.d);
+    if (y.infinite) return tracer.unoccluded({o, edge.d});
+    const bool surface = y.x.emitter && y.x.emitter->traits().surface;
+    return tracer.visible(o, surface ? Scene::offset_target(y.x, -edge.d, edge.length) : y.x.p, edge.inverse_length);
+}
+bool surfaces_see(Tracer& tracer, const Vertex& x, const Vertex& y, const Edge& edge) {
+    return tracer.visible(Scene::offset_origin(x.x, edge.d), Scene::offset_target(y.x, -edge.d, edge.length),
+                          edge.inverse_length);
+}
+
 // s = 0: x_k lies on an emitter.
 PathFailure hit_emitter(const Scene& scene, std::span<const Vertex> eye, Connection& c) {
     const Vertex& x = eye.back();
@@ -79,9 +94,7 @@ PathFailure see_from_sensor(Tracer& tracer, const RasterWindow& window, const Ve
     const Edge edge(y.x.p, x0.x.p, x0.infinite);
     End end;
     if (!evaluate_end(y, Mode::light, edge.d, end)) return PathFailure::zero_bsdf;
-    // From the surface: the other end is on none, so that no error there counts.
-    const double inverse_length = x0.infinite ? 1 / (view->o - y.x.p).norm() : edge.inverse_length;
-    if (!tracer.visible(Scene::offset_origin(y.x, edge.d), view->o, inverse_length)) return PathFailure::occluded;
+    if (!sensor_sees(tracer, *view, x0, y, edge)) return PathFailure::occluded;
     c.throughput = y.throughput * end.f * (view->importance * edge.inv_r2 / x0.pdf_fwd);
     c.junction.eye_t = view->raster_per_measure / window.area() * end.cos_geometric * edge.inv_r2;
     c.junction.eye_t1 = end.pdf_prev * y.to_prev;
@@ -99,16 +112,11 @@ PathFailure connect_emitter(Tracer& tracer, std::span<const Vertex> eye, const V
     const Spectrum emitted = emitter.emitted(e, -d);
     End end;
     if (is_black(emitted) || !evaluate_end(x, Mode::eye, d, end)) return PathFailure::zero_bsdf;
-    const Vec3 o = Scene::offset_origin(x.x, d);
-    const bool surface = emitter.traits().surface;
-    const bool seen = y.infinite ? tracer.unoccluded({o, d})
-                                 : tracer.visible(o, surface ? Scene::offset_target(y.x, -d, edge.length) : y.x.p,
-                                                  edge.inverse_length);
-    if (!seen) return PathFailure::occluded;
+    if (!emitter_seen(tracer, x, y, edge)) return PathFailure::occluded;
     c.throughput = x.throughput * end.f * y.throughput * emitted * inv_r2;
     c.junction.light_t1 = emitter.pdf_ray(e, -d) * end.cos_geometric * inv_r2;
     c.junction.light_t2 = end.pdf_prev * x.to_prev;
-    c.junction.eye_t = end.pdf_next * (surface ? std::abs(y.x.ng.dot(d)) * inv_r2 : 1);
+    c.junction.eye_t = end.pdf_next * (emitter.traits().surface ? std::abs(y.x.ng.dot(d)) * inv_r2 : 1);
     return PathFailure::none;
 }
 
@@ -121,8 +129,7 @@ PathFailure connect_surfaces(Tracer& tracer, std::span<const Vertex> eye, std::s
     if (!std::isfinite(inv_r2)) return PathFailure::occluded;
     End at_x, at_y;
     if (!evaluate_end(x, Mode::eye, d, at_x) || !evaluate_end(y, Mode::light, -d, at_y)) return PathFailure::zero_bsdf;
-    if (!tracer.visible(Scene::offset_origin(x.x, d), Scene::offset_target(y.x, -d, edge.length), edge.inverse_length))
-        return PathFailure::occluded;
+    if (!surfaces_see(tracer, x, y, edge)) return PathFailure::occluded;
     c.throughput = x.throughput * at_x.f * at_y.f * y.throughput * inv_r2;
     c.junction.light_t1 = at_y.pdf_next * at_x.cos_geometric * inv_r2;
     c.junction.light_t2 = at_x.pdf_prev * x.to_prev;
@@ -171,14 +178,24 @@ inline void for_density_ratios(std::span<const Vertex> eye, std::span<const Vert
 PathFailure connect(Tracer& tracer, const RasterWindow& window, std::span<const Vertex> eye,
                     std::span<const Vertex> light, Connection& c) {
     if (light.empty()) return hit_emitter(tracer.scene(), eye, c);
-    if (eye.size() > 1 && !connectable(eye.back())) return PathFailure::zero_bsdf;
-    if (light.size() > 1 && !connectable(light.front())) return PathFailure::zero_bsdf;
+    if (eye.size() > 1 && !has_smooth_lobe(eye.back())) return PathFailure::zero_bsdf;
+    if (light.size() > 1 && !has_smooth_lobe(light.front())) return PathFailure::zero_bsdf;
     if (eye.size() == 1) {
         if (light.size() == 1) return PathFailure::zero_bsdf;
         return see_from_sensor(tracer, window, eye.front(), light, c);
     }
     if (light.size() == 1) return connect_emitter(tracer, eye, light.front(), c);
     return connect_surfaces(tracer, eye, light, c);
+}
+
+bool visible(Tracer& tracer, const Vertex& x, const Vertex& y) {
+    if (!x.x.bsdf) {
+        const Edge edge(y.x.p, x.x.p, x.infinite);
+        const auto view = tracer.scene().sensor().view(sensor_point(x), y.x.p);
+        return view && sensor_sees(tracer, *view, x, y, edge);
+    }
+    const Edge edge(x.x.p, y.x.p, y.infinite);
+    return y.x.bsdf ? surfaces_see(tracer, x, y, edge) : emitter_seen(tracer, x, y, edge);
 }
 
 double mis_weight(std::span<const Vertex> eye, std::span<const Vertex> light, const Junction& junction,

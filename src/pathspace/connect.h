@@ -42,6 +42,14 @@ struct Connection {
 PathFailure connect(Tracer& tracer, const RasterWindow& window, std::span<const Vertex> eye,
                     std::span<const Vertex> light, Connection& c);
 
+// Whether an edge may end at a vertex on a surface that no direction was drawn for.
+inline bool has_smooth_lobe(const Vertex& v) { return v.x.bsdf && v.x.bsdf->traits().smooth; }
+inline bool connectable(const Vertex& v) { return !v.delta && has_smooth_lobe(v); }
+
+// Whether nothing lies between two neighbours of a path, `x` the one nearer to the sensor, which may be the sensor. Not
+// both are endpoints.
+bool visible(Tracer& tracer, const Vertex& x, const Vertex& y);
+
 // Which techniques take part in the weights: those with so many vertices from the light.
 struct TechniqueSet {
     int min_light = 0, max_light = std::numeric_limits<int>::max();

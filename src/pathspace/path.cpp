@@ -2,40 +2,14 @@
 
 #include <cmath>
 
+#include "pathspace/neighbours.h"
+
 namespace keyhole {
 namespace {
 
-// Unit direction from a surface vertex to its neighbour.
-Vec3 direction(const Vertex& from, const Vertex& to) {
-    return to.infinite ? to.x.p : Vec3((to.x.p - from.x.p).normalized());
-}
-
-// Turns a solid-angle density at a vertex into the density of its neighbour `to` (and, squared distance and far cosine,
-// is that end's share of the geometry term). `d` points from `to` towards the vertex.
-double to_measure(const Vertex& from, const Vertex& to, const Vec3& d) {
-    if (to.infinite) return 1;
-    const double cosine = to.x.ng.isZero() ? 1 : std::abs(to.x.ng.dot(d));
-    return from.infinite ? cosine : cosine / (to.x.p - from.x.p).squaredNorm();
-}
-
-struct Event {
-    Spectrum f{0, 0, 0};  // with |ns.w_light| / |ng.w_light|
-    double pdf_light = 0, pdf_eye = 0;
-};
-
-Event event(const Vertex& v, const Vec3& to_eye, const Vec3& to_light) {
-    const Vec3 we = v.x.frame.to_local(to_eye), wl = v.x.frame.to_local(to_light);
-    const double ge = v.x.ng.dot(to_eye), gl = v.x.ng.dot(to_light);
-    if (!same_side(ge, we.z()) || !same_side(gl, wl.z())) return {};
-    const double correction = std::abs(wl.z() / gl);
-    if (v.delta) return {v.delta_f * correction, v.delta_pdf_light, v.delta_pdf_eye};
-    const BsdfValue value = v.x.bsdf->eval(v.x, we, wl);
-    return {value.f * correction, value.pdf_light, value.pdf_eye};
-}
-
-Event event(const Path& path, int i) {
+Scattering event(const Path& path, int i) {
     const Vertex& v = path.x[i];
-    return event(v, direction(v, path.x[i - 1]), direction(v, path.x[i + 1]));
+    return scattering(v, direction(v, path.x[i - 1]), direction(v, path.x[i + 1]));
 }
 
 }  // namespace
@@ -93,7 +67,7 @@ PathDensities densities(const Scene& scene, const RasterWindow& window, const Pa
         p.light[k - 1] = emitter.pdf_ray(e, w) * to_measure(xk, before, w);
     }
     for (int i = 1; i < k; ++i) {
-        const Event at = event(path, i);
+        const Scattering at = event(path, i);
         const Vertex &v = path.x[i], &before = path.x[i - 1], &after = path.x[i + 1];
         p.eye[i + 1] = at.pdf_light * to_measure(v, after, direction(v, after));
         if (i > 1) p.light[i - 1] = at.pdf_eye * to_measure(v, before, direction(v, before));

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "pathspace/neighbours.h"
+
 namespace keyhole {
 namespace {
 
@@ -147,6 +149,29 @@ Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& nex
     if (is_dark(next, wanted)) return Extension::dark;
     arrive(v.x.p, d, pdf, cos_next, next);
     return Extension::surface;
+}
+
+Extension trace_from(Tracer& tracer, const Vertex& v, const Vec3& d, Vertex& next) {
+    Ray ray{v.x.p, d};
+    if (v.x.bsdf)
+        ray = Scene::ray_from(v.x, d);
+    else if (v.x.emitter && v.x.emitter->traits().surface)
+        ray = Scene::ray_from(emitter_point(v), d);
+    if (!tracer.intersect(ray, next.x)) {
+        escape(tracer.scene(), d, 0, next);
+        return Extension::escaped;
+    }
+    next.throughput = Spectrum::Ones();
+    arrive(v.x.p, d, 0, v.x.ng.isZero() ? 1 : v.x.ng.dot(d), next);
+    return Extension::surface;
+}
+
+void orient(const Vertex& prev, Vertex& v) {
+    const Vec3 d = direction(v, prev);
+    v.w_prev = v.x.frame.to_local(d);
+    v.cos_prev = v.x.ng.dot(d);
+    v.to_prev = to_measure(v, prev, d);
+    v.throughput = Spectrum::Ones();
 }
 
 }  // namespace keyhole

@@ -47,4 +47,11 @@ Extension first_light_edge(Tracer& tracer, const Vec2& u, Vertex& y0, Vertex& y1
 Extension extend(Tracer& tracer, Mode mode, Vertex& prev, Vertex& v, Vertex& next, double u_lobe, const Vec2& u,
                  Wanted wanted = Wanted::surface);
 
+// The vertex that the ray from a finite vertex (on a surface or an emitter's endpoint) meets in the unit direction d.
+// `next` has no densities, and the throughput 1.
+Extension trace_from(Tracer& tracer, const Vertex& v, const Vec3& d, Vertex& next);
+
+// Makes a vertex of a path one that `extend` can go on from, away from its neighbour `prev`; with the throughput 1.
+void orient(const Vertex& prev, Vertex& v);
+
 }  // namespace keyhole

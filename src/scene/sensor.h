@@ -49,6 +49,8 @@ class Sensor {
     // Empty if `x` is behind the sensor, nearer than the near plane or farther than the far plane. The raster position
     // may lie outside the film.
     virtual std::optional<SensorView> view(const SensorPoint& e, const Vec3& x) const = 0;
+    // The raster position whose ray has the unit direction d. Empty behind the sensor, and where all rays are parallel.
+    virtual std::optional<Vec2> raster_towards(const SensorPoint& e, const Vec3& d) const = 0;
     virtual const char* name() const = 0;
     const SensorTraits& traits() const { return traits_; }
 

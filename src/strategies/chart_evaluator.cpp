@@ -1,5 +1,8 @@
 #include "strategies/chart_evaluator.h"
 
+#include <cmath>
+#include <limits>
+
 #include "strategies/technique_distribution.h"
 
 namespace keyhole {
@@ -15,6 +18,7 @@ ChartEvaluator::ChartEvaluator(const Scene& scene, const CoordinateLayout& layou
 PssState ChartEvaluator::make_state() const {
     PssState state(chart_.layout());
     if (needs_.path) state.path.room.resize(chart_.layout().max_length() + 1);
+    if (needs_.measure) state.measure = PathMeasure(chart_.layout().max_length());
     return state;
 }
 
@@ -61,6 +65,31 @@ bool ChartEvaluator::find_coordinates(PssState& x, Rng& rng) {
     x.known = Known::coordinates;
     x.inverse_exists = true;
     return true;
+}
+
+const PathMeasure* ChartEvaluator::measure(const PssState& x) {
+    if (!x.measured) {
+        x.measured = true;
+        if (keyhole::measure(chart_.tracer().scene(), chart_.window(), chart_.target().function, x.path.x(),
+                             x.measure) != PathFailure::none)
+            x.measure.log_f = -std::numeric_limits<double>::infinity();
+    }
+    return std::isfinite(x.measure.log_f) ? &x.measure : nullptr;
+}
+
+PathFailure ChartEvaluator::complete(PssState& y) {
+    y.target = 0;
+    y.u.k = y.path.k;
+    y.known = Known::path;
+    y.inverse_exists = false;
+    const PathFailure failure =
+        keyhole::measure(chart_.tracer().scene(), chart_.window(), chart_.target().function, y.path.x(), y.measure);
+    if (failure != PathFailure::none) return failure;
+    y.measured = true;
+    y.raster = y.measure.raster;
+    y.splat = y.measure.color;
+    y.target = adopt_technique(chart_.target().techniques, y.measure, y.path);
+    return y.target > 0 ? PathFailure::none : PathFailure::zero_bsdf;
 }
 
 bool ChartEvaluator::may_move_in_chart(PssState& x, Rng& rng) {

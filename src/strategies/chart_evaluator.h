@@ -10,6 +10,7 @@ namespace keyhole {
 struct StateNeeds {
     bool path = false;     // the vertices stay with the state
     bool forgets = false;  // some move leaves the state's coordinates unknown
+    bool measure = false;  // of the path, for moves in path space
 };
 
 class ChartEvaluator final : public Evaluator {
@@ -37,6 +38,15 @@ class ChartEvaluator final : public Evaluator {
     // y becomes x's path by technique t, traced again. False where there is no inverse or it does not lead back to the
     // path, and where there is none by x's own technique (known), by which the way back would go.
     bool go_over(PssState& x, int t, PssState& y, Rng& rng);
+
+    // Of states that measure their paths:
+
+    // Null where rounding denies a path that a chart has made (at the film's border): no move in path space may start
+    // or end there.
+    const PathMeasure* measure(const PssState& x);
+    // Completes a state of which only the path's vertices and k are set: what it contributes, without its visibility,
+    // and C by all techniques; its technique is not known. After a failure its target is 0.
+    PathFailure complete(PssState& y);
 
   private:
     Chart chart_;

@@ -11,6 +11,7 @@ StateNeeds needs_of(const Mix& mix) {
         if (!(s.weight > 0)) continue;
         needs.path = needs.path || s.info->needs.path;
         needs.forgets = needs.forgets || s.info->needs.forgets;
+        needs.measure = needs.measure || s.info->needs.measure;
     }
     return needs;
 }
@@ -33,8 +34,9 @@ std::size_t bytes_per_state(const CoordinateLayout& layout, const Mix& mix) {
     const auto longest = static_cast<std::size_t>(layout.max_length());
     if (mix.techniques.all_at_once)
         return sizeof(double) * static_cast<std::size_t>(layout.count(0, 0)) + sizeof(Splat) * longest;
+    const StateNeeds needs = needs_of(mix);
     return sizeof(double) * static_cast<std::size_t>(layout.capacity()) +
-           (needs_of(mix).path ? sizeof(Vertex) * (longest + 1) : 0);
+           (needs.path ? sizeof(Vertex) : 0) * (longest + 1) + (needs.measure ? 3 * sizeof(double) : 0) * (longest + 1);
 }
 
 }  // namespace keyhole

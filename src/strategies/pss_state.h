@@ -1,9 +1,10 @@
-// The state of a chain: a path, what it contributes, and the coordinates by which one technique makes it, as far as they
-// are known.
+// The state of a chain: a path, what it contributes, and the coordinates by which one technique makes it, as far as
+// they are known.
 #pragma once
 
 #include <vector>
 
+#include "pathspace/measure.h"
 #include "pss/chart.h"
 
 namespace keyhole {
@@ -26,7 +27,10 @@ struct PssState {
     Known known = Known::coordinates;
     bool inverse_exists = false;  // found so for this path and technique; false: not tried
     SampledPath path;             // without room unless a strategy of the mix asks for paths
-    std::vector<Splat> more;      // with all connections at once: the splats beside the first
+    // Cached for moves in path space; without room unless a strategy of the mix asks for it.
+    mutable PathMeasure measure;
+    mutable bool measured = false;
+    std::vector<Splat> more;  // with all connections at once: the splats beside the first
 
     explicit PssState(const CoordinateLayout& layout) : u(layout) {}
 
@@ -37,7 +41,7 @@ struct PssState {
         raster = e.raster;
         target = e.target;
         known = Known::coordinates;
-        inverse_exists = false;
+        inverse_exists = measured = false;
         if (target > 0) splat = e.contribution / target;
     }
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "strategies/path_space_strategies.h"
 
 namespace keyhole {
 namespace {
@@ -113,16 +114,21 @@ StrategyInfo chart_move(const char* name, const char* description) {
 }  // namespace
 
 const std::vector<StrategyInfo>& strategy_registry() {
-    static const std::vector<StrategyInfo> registry = {
-        large_step(),
-        small_step(),
-        technique_change(),
-        chart_move<ChartSwap>(
-            "chart-swap", "Keeps the path and goes over to another technique, with coordinates from the exact inverse"),
-        chart_move<ChartGibbs>(
-            "chart-gibbs",
-            "As chart-swap, but draws the technique from its distribution given the path: never rejected"),
-        inverse_small_step()};
+    static const std::vector<StrategyInfo> registry = [] {
+        std::vector<StrategyInfo> all = {
+            large_step(),
+            small_step(),
+            technique_change(),
+            chart_move<ChartSwap>(
+                "chart-swap",
+                "Keeps the path and goes over to another technique, with coordinates from the exact inverse"),
+            chart_move<ChartGibbs>(
+                "chart-gibbs",
+                "As chart-swap, but draws the technique from its distribution given the path: never rejected"),
+            inverse_small_step()};
+        for (StrategyInfo& info : path_space_strategies()) all.push_back(std::move(info));
+        return all;
+    }();
     return registry;
 }
 

@@ -1,9 +1,11 @@
 // path, bdpt and the mixes converge to one image, on the project's own scenes, which together hold every plugin of the
 // reader (tests/scene/own_scenes_test.cpp).
+#include <map>
 #include <set>
 
 #include "own_scenes.h"
 #include "render/replicates.h"
+#include "strategies/mix_file.h"
 
 namespace keyhole {
 namespace {
@@ -12,6 +14,27 @@ struct MixCase {
     Mix mix;
     double mutations_per_pixel;
 };
+
+// A mix of large steps and the strategy alone.
+MixCase alone(const std::string& name, const std::string& parameters) {
+    const std::string text = "name = \"" + name +
+                             "\"\n[[strategy]]\ntype = \"large-step\"\nweight = 0.2\n[[strategy]]\nweight = 0.8\n" +
+                             parameters;
+    return {parse_mix(text, name), 1500};
+}
+
+// Moves in path space, each alone.
+const std::vector<MixCase>& path_space_moves() {
+    static const std::vector<MixCase> cases = {
+        alone("bidirectional", "type = \"bidirectional\""),
+        alone("lens-raster", "type = \"lens\""),
+        alone("lens-angle", "type = \"lens\"\nprimary = \"angle\"\nr-min = 0.02\nr-max = 0.3"),
+        alone("multichain", "type = \"multichain\"\nr-min = 0.02\nr-max = 0.3\nroughness = 0.3"),
+        alone("caustic-raster", "type = \"caustic\""),
+        alone("caustic-angle", "type = \"caustic\"\nsize = \"angle\"\nr-min = 0.02\nr-max = 0.3\nroughness = 0.3"),
+    };
+    return cases;
+}
 
 // All built-in mixes that are exact, and one for the policy that none of them has. Those whose steps find the caustics
 // of the ajar door more rarely have more mutations, as the z-test takes the means of runs for normal.
@@ -34,37 +57,52 @@ const std::vector<MixCase>& exact_mixes() {
 // False-alarm level of the whole file.
 constexpr double family_level = 1e-3;
 
-class Agrees : public testing::TestWithParam<TransportCase> {};
+class Agrees : public testing::TestWithParam<TransportCase> {
+  protected:
+    static constexpr int runs = 12;
 
-TEST_P(Agrees, WithBidirectionalPathTracing) {
-    const TransportCase& c = GetParam();
-    const auto scene = own_scene(c, 12, 12);
-    constexpr int runs = 12;
-    const int comparisons = static_cast<int>((1 + exact_mixes().size()) * transport_cases().size());
-    const double level = sidak_level(family_level, comparisons);
+    Agrees() { settings.mix.lengths.max = GetParam().max_length; }
 
+    const Replicates& bdpt() {
+        static std::map<std::string, Replicates> cache;
+        const auto found = cache.find(GetParam().scene);
+        if (found != cache.end()) return found->second;
+        settings.integrator = Integrator::bdpt;
+        settings.mutations_per_pixel = 400;
+        return cache.emplace(GetParam().scene, render_replicates(*scene, settings, runs)).first->second;
+    }
+    double level() const {
+        const std::size_t entries = 1 + exact_mixes().size() + path_space_moves().size();
+        return sidak_level(family_level, static_cast<int>(entries * transport_cases().size()));
+    }
+    void expect_agreement_of(const std::vector<MixCase>& mixes) {
+        for (const MixCase& mix : mixes) {
+            const Replicates& reference = bdpt();
+            settings.integrator = Integrator::mmlt;
+            settings.mix = mix.mix;
+            settings.mix.lengths.max = GetParam().max_length;
+            settings.mix.chain_count = 64;
+            settings.mix.bootstrap_samples = 40000;
+            settings.mutations_per_pixel = mix.mutations_per_pixel;
+            expect_agreement(render_replicates(*scene, settings, runs), reference, level(),
+                             GetParam().scene + "-" + mix.mix.name);
+        }
+    }
+
+    std::unique_ptr<Scene> scene = own_scene(GetParam(), 12, 12);
     RenderSettings settings;
-    settings.mix.lengths.max = c.max_length;
-    settings.integrator = Integrator::bdpt;
-    settings.mutations_per_pixel = 400;
-    const Replicates bdpt = render_replicates(*scene, settings, runs);
-    EXPECT_GT(bdpt.mean(bdpt.sum.size() - 1), 0);
+};
 
+TEST_P(Agrees, PathTracingWithBidirectionalPathTracing) {
+    const Replicates& reference = bdpt();
+    EXPECT_GT(reference.mean(reference.sum.size() - 1), 0);
     settings.integrator = Integrator::path;
     settings.mutations_per_pixel = 2000;
-    expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, c.scene + "-path");
-
-    settings.integrator = Integrator::mmlt;
-    for (const MixCase& mix : exact_mixes()) {
-        const PathLengths lengths = settings.mix.lengths;
-        settings.mix = mix.mix;
-        settings.mix.lengths = lengths;
-        settings.mix.chain_count = 64;
-        settings.mix.bootstrap_samples = 40000;
-        settings.mutations_per_pixel = mix.mutations_per_pixel;
-        expect_agreement(render_replicates(*scene, settings, runs), bdpt, level, c.scene + "-" + settings.mix.name);
-    }
+    expect_agreement(render_replicates(*scene, settings, runs), reference, level(), GetParam().scene + "-path");
 }
+
+TEST_P(Agrees, EveryMix) { expect_agreement_of(exact_mixes()); }
+TEST_P(Agrees, EveryMoveInPathSpace) { expect_agreement_of(path_space_moves()); }
 
 // Sum over pixels of the squared differences of the means, each over its variance: about their number where both agree.
 double squared_differences(const Replicates& a, const Replicates& b) {

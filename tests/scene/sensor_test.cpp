@@ -81,6 +81,12 @@ TEST_P(SensorTest, ViewInvertsRay) {
         // Relative to the film's size.
         EXPECT_NEAR((view->raster - position).norm(), 0, 1e-12 * 640) << position.transpose();
         EXPECT_NEAR((view->o - ray.o).norm(), 0, 1e-12 * 10);
+        const auto towards = sensor->raster_towards(e, ray.d);
+        EXPECT_EQ(towards.has_value(), !sensor->traits().infinite);
+        if (towards) {
+            EXPECT_NEAR((*towards - position).norm(), 0, 1e-12 * 640) << position.transpose();
+            EXPECT_FALSE(sensor->raster_towards(e, -ray.d));
+        }
     }
 }
 

@@ -41,6 +41,7 @@ class Orthographic final : public Sensor {
         const Vec2 raster(half_width_ - half_width_ * local.x(), half_height_ - half_width_ * local.y());
         return SensorView{raster, to_world_ * Vec3(local.x(), local.y(), near_clip_), density_, density_};
     }
+    std::optional<Vec2> raster_towards(const SensorPoint&, const Vec3&) const override { return std::nullopt; }
     const char* name() const override { return "orthographic"; }
 
   private:

@@ -16,6 +16,9 @@ class Perspective final : public Sensor {
     std::optional<SensorView> view(const SensorPoint& e, const Vec3& x) const override {
         return projection_.view(e.p, {0, 0}, x, 1);
     }
+    std::optional<Vec2> raster_towards(const SensorPoint&, const Vec3& d) const override {
+        return projection_.raster_towards({0, 0}, d);
+    }
     const char* name() const override { return "perspective"; }
 
   private:

@@ -42,6 +42,12 @@ class Projection {
         return SensorView{center_ - pixels_ * image, p + to_x * (near_clip_ * inv_z), density * aperture_pdf, density};
     }
 
+    std::optional<Vec2> raster_towards(const Vec2& shift, const Vec3& direction) const {
+        const Vec3 d = to_camera(direction);
+        if (!(d.z() > 0)) return std::nullopt;
+        return center_ - pixels_ * (d.head<2>() / d.z() + shift);
+    }
+
   private:
     Matrix3 rotation_;
     Vec3 origin_;

@@ -32,6 +32,9 @@ class ThinLens final : public Sensor {
     std::optional<SensorView> view(const SensorPoint& e, const Vec3& x) const override {
         return projection_.view(e.p, shift(e), x, pdf_);
     }
+    std::optional<Vec2> raster_towards(const SensorPoint& e, const Vec3& d) const override {
+        return projection_.raster_towards(shift(e), d);
+    }
     const char* name() const override { return "thinlens"; }
 
   private:

@@ -1,0 +1,117 @@
+#include "strategies/path_space_strategies.h"
+
+#include <fmt/format.h>
+
+#include "strategies/bidirectional.h"
+#include "strategies/caustic.h"
+#include "strategies/eye_perturbation.h"
+
+namespace keyhole {
+namespace {
+
+double number(const Values& values, const char* name) { return std::get<double>(values.at(name)); }
+bool is(const Values& values, const char* name, const char* value) {
+    return std::get<std::string>(values.at(name)) == value;
+}
+
+StrategyInfo path_space(const char* name, const char* description) {
+    StrategyInfo info;
+    info.name = name;
+    info.description = description;
+    info.needs = {.path = true, .forgets = true, .measure = true};
+    info.hindrance = [](const Scene&, const PathLengths&) { return std::string(); };
+    return info;
+}
+
+// For chains of at least one specular vertex between two rough ones or ends.
+std::string needs_three_edges(const Scene&, const PathLengths& lengths) {
+    return lengths.max >= 3 ? "" : "it moves paths of three edges or more";
+}
+
+StrategyInfo bidirectional() {
+    StrategyInfo info =
+        path_space("bidirectional", "Deletes a part of the path and grows another from both ends, of another length");
+    info.ergodic = true;
+    info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<Bidirectional>(*c.charts, LengthLimits{c.lengths.min, c.lengths.max, c.lengths.fixed});
+    };
+    return info;
+}
+
+Parameter roughness() {
+    return Parameter::number("roughness", 0.1, 0, 1,
+                             "vertices that scatter in a lobe as narrow as this roughness gives count as specular")
+        .open();
+}
+
+// Sizes of steps: angles, and pixels where `choice` is "raster".
+void add_sizes(StrategyInfo& info, Parameter choice) {
+    const std::string name = choice.name;
+    const Parameter r_min =
+        Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of a direction").open().in("radians");
+    const Parameter r_max =
+        Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().in("radians");
+    const Parameter pixels_min =
+        Parameter::number("pixels-min", 0.1, 0, 1e4, "smallest step in the image").open().in("pixels");
+    const Parameter pixels_max =
+        Parameter::number("pixels-max", 0, 0, 1e6, "largest step; 0: the radius of a twentieth of the film")
+            .in("pixels");
+    info.parameters = {
+        std::move(choice), r_min, r_max, pixels_min.only_with(name, "raster"), pixels_max.only_with(name, "raster"),
+        roughness()};
+    info.contradiction = [](const Values& v) -> std::string {
+        if (number(v, "r-min") >= number(v, "r-max"))
+            return fmt::format("r-min = {} is not below r-max = {}", number(v, "r-min"), number(v, "r-max"));
+        if (const double most = number(v, "pixels-max"); most > 0 && number(v, "pixels-min") >= most)
+            return fmt::format("pixels-min = {} is not below pixels-max = {}", number(v, "pixels-min"), most);
+        return {};
+    };
+}
+std::unique_ptr<const StepSize> fixed_size(const Values& v) {
+    return std::make_unique<FixedStepSize>(number(v, "r-min"), number(v, "r-max"));
+}
+RasterStep raster_step(const Values& v, const char* choice) {
+    return {is(v, choice, "raster"), number(v, "pixels-min"), number(v, "pixels-max")};
+}
+
+template <EyePerturbation::Chains chains>
+StrategyInfo eye_perturbation(const char* name, const char* description) {
+    StrategyInfo info = path_space(name, description);
+    add_sizes(info, Parameter::choice("primary", {"raster", "angle"}, "how the primary ray moves"));
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<EyePerturbation>(*c.charts, chains, fixed_size(v), number(v, "roughness"),
+                                                 raster_step(v, "primary"));
+    };
+    return info;
+}
+
+StrategyInfo multichain() {
+    StrategyInfo info = eye_perturbation<EyePerturbation::Chains::many>(
+        "multichain", "As lens, for paths that leave a rough vertex into another chain of specular ones");
+    info.hindrance = needs_three_edges;
+    return info;
+}
+
+StrategyInfo caustic() {
+    StrategyInfo info = path_space("caustic",
+                                   "Perturbs the direction of light into a chain of specular vertices that ends where "
+                                   "the sensor looks, and follows the chain");
+    add_sizes(info, Parameter::choice("size", {"raster", "angle"}, "what the size of steps is given by"));
+    info.hindrance = needs_three_edges;
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<CausticPerturbation>(*c.charts, fixed_size(v), raster_step(v, "size"),
+                                                     number(v, "roughness"));
+    };
+    return info;
+}
+
+}  // namespace
+
+std::vector<StrategyInfo> path_space_strategies() {
+    return {bidirectional(),
+            eye_perturbation<EyePerturbation::Chains::one>(
+                "lens", "Perturbs the primary ray, follows specular vertices, and connects the first rough one"),
+            multichain(), caustic()};
+}
+
+}  // namespace keyhole
