@@ -71,6 +71,7 @@ Json info_json(const InfoOptions& options, const LoadedScene& loaded) {
     json["bsdfs"] = s.bsdfs;
     json["textures"] = s.textures;
     json["emitters"] = {{"count", s.emitters}, {"kinds", emitter_kinds(scene)}};
+    json["portals"] = scene.portals().names().size();
     json["sensor"] = scene.sensor().name();
     json["film"] = film_json(film);
     json["max_length"] = max_length_json(scene);
@@ -102,7 +103,8 @@ void print_contents(const Scene& scene) {
     std::string kinds;
     for (const auto& [kind, count] : emitter_kinds(scene))
         kinds += fmt::format("{}{} {}", kinds.empty() ? ": " : ", ", count, kind);
-    fmt::print("emitters    {}{}\nBSDFs       {}\ntextures    {}\n", s.emitters, kinds, s.bsdfs, s.textures);
+    fmt::print("emitters    {}{}\nBSDFs       {}\ntextures    {}\nportals     {}\n", s.emitters, kinds, s.bsdfs,
+               s.textures, scene.portals().names().size());
 }
 
 void print_info(const InfoOptions& options, const LoadedScene& loaded) {

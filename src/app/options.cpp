@@ -117,6 +117,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     const auto filter = [&reader](const std::string& text) { reader.filter = filter_of(text); };
     add_parsed(command, "--filter", "box|tent|gaussian", filter,
                "Reconstruction filter, with its default width [default: the scene file's]");
+    command.add_option("--portals", reader.portals,
+                       "Scene file of portals, added to the scene: openings that light passes through");
     command.add_flag("--lenient", reader.lenient,
                      "Unknown parameters in the scene file are warnings instead of errors");
 }

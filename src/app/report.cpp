@@ -21,6 +21,7 @@ Json scene_json(const SceneOptions& options, const LoadedScene& loaded) {
             {"crop", r.override_crop ? Json{r.crop_x, r.crop_y, r.crop_width, r.crop_height} : Json()},
             {"filter", r.filter ? Json(r.filter->name()) : Json()},
             {"defines", r.defines},
+            {"portals", r.portals.empty() ? Json() : Json(r.portals)},
             {"lenient", r.lenient},
             {"triangles", loaded.scene->statistics().triangles},
             {"seconds_reading", loaded.seconds_reading},
@@ -43,14 +44,14 @@ Json settings_json(const RenderSettings& s) {
 
 Json strategy_json(const StrategyStatistics& s) {
     Json json = {{"name", s.name},
-            {"proposals", s.proposals},
-            {"accepted", s.accepted},
-            {"mean_acceptance", s.mean_acceptance},
-            {"failures", s.failures},
-            {"effective_sample_size", s.luminance.effective_sample_size},
-            {"autocorrelation_time", s.luminance.autocorrelation_time},
-            {"position_effective_sample_size", s.position.effective_sample_size},
-            {"position_autocorrelation_time", s.position.autocorrelation_time}};
+                 {"proposals", s.proposals},
+                 {"accepted", s.accepted},
+                 {"mean_acceptance", s.mean_acceptance},
+                 {"failures", s.failures},
+                 {"effective_sample_size", s.luminance.effective_sample_size},
+                 {"autocorrelation_time", s.luminance.autocorrelation_time},
+                 {"position_effective_sample_size", s.position.effective_sample_size},
+                 {"position_autocorrelation_time", s.position.autocorrelation_time}};
     if (s.excluded > 0) json["excluded"] = s.excluded;
     if (s.second.proposals > 0)
         json["second_stage"] = {

@@ -32,6 +32,7 @@ SceneOptions scene_options(const Json& scene) {
     options.filename = find_scene(scene);
     options.reader.defines = scene.at("defines").get<std::map<std::string, std::string>>();
     options.reader.lenient = scene.at("lenient");
+    if (const Json& portals = scene.at("portals"); !portals.is_null()) options.reader.portals = portals;
     if (const Json& size = scene.at("size"); !size.is_null()) {
         options.reader.width = size.at(0);
         options.reader.height = size.at(1);
@@ -85,6 +86,7 @@ SceneOptions merge(const SceneOptions& stored, const SceneOptions& given) {
     ReaderOptions& to = result.reader;
     for (const auto& [name, value] : from.defines) to.defines[name] = value;
     to.lenient = to.lenient || from.lenient;
+    if (!from.portals.empty()) to.portals = from.portals;
     if (from.filter) to.filter = from.filter;
     if (from.width > 0) {
         to.width = from.width;

@@ -17,6 +17,7 @@ struct ReaderOptions {
     std::map<std::string, std::string> defines;  // -D name=value
     bool lenient = false;                        // unknown parameters are warnings
     int width = 0, height = 0;                   // > 0: replaces the film's size
+    std::string portals;                         // a scene file that holds portals alone, added to this one
     bool override_crop = false;
     int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // in pixels, with override_crop
     std::optional<ReconstructionFilter> filter;                   // replaces the film's

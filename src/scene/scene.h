@@ -9,9 +9,11 @@
 #include <utility>
 #include <vector>
 
+
 #include "scene/bsdf.h"
 #include "scene/emitter.h"
 #include "scene/filter.h"
+#include "scene/portals.h"
 #include "scene/sensor.h"
 #include "scene/shape.h"
 
@@ -80,6 +82,8 @@ class Scene {
     double emitter_probability(const Emitter* emitter) const { return emitter->selection_probability(); }
     const Emitter* environment() const { return environment_; }
 
+    const Portals& portals() const { return portals_; }
+
     const EmbreeScene& embree() const { return *embree_; }
     // Shapes and Embree's hierarchy have coordinates relative to this point: zero, but for scenes far from it, where
     // floats are coarse.
@@ -108,6 +112,7 @@ class Scene {
     std::vector<const Emitter*> emitters_;
     std::vector<double> emitter_cdf_;  // entry i: probability of emitters 0 to i
     const Emitter* environment_ = nullptr;
+    Portals portals_;
     std::unique_ptr<Sensor> sensor_;
     FilmSettings film_;
     Requirements requirements_;

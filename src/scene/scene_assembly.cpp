@@ -242,6 +242,7 @@ std::unique_ptr<Scene> SceneBuilder::build() {
     scene->statistics_.embree_bytes = scene->embree_->bytes();
     scene->sensor_ = std::move(parts.sensor);
     scene->film_ = parts.film;
+    scene->portals_ = std::move(parts.portals);
     scene->max_path_length_ = parts.max_path_length;
     scene->content_hash_ = parts.content_hash;
     for (Parts::Item& item : parts.items) scene->shapes_.push_back(std::move(item.shape));

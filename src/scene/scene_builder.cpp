@@ -84,6 +84,12 @@ void SceneBuilder::add_emitter(std::unique_ptr<Emitter> emitter) {
     parts_->emitters.push_back(std::move(emitter));
 }
 
+void SceneBuilder::add_portal(const std::string& name, std::vector<PortalFace> faces) {
+    if (parts_->current_group != Parts::top_level)
+        throw std::invalid_argument("a portal cannot be part of a shape group");
+    parts_->portals.add(name, std::move(faces));
+}
+
 void SceneBuilder::set_sensor(std::unique_ptr<Sensor> sensor, const FilmSettings& film) {
     parts_->sensor = std::move(sensor);
     parts_->film = film;

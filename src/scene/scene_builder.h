@@ -39,6 +39,9 @@ class SceneBuilder {
     void end_group();
     void add_instance(const std::string& group_id, const Affine& to_world);
 
+    // Invisible: see portals.h. Throws std::invalid_argument for one without area.
+    void add_portal(const std::string& name, std::vector<PortalFace> faces);
+
     void add_emitter(std::unique_ptr<Emitter> emitter);  // other than area; at most one environment
     void set_sensor(std::unique_ptr<Sensor> sensor, const FilmSettings& film);
     void set_max_path_length(int edges);

@@ -33,6 +33,7 @@ struct SceneBuilder::Parts {
     std::vector<Instance> instances;                 // of groups
     std::vector<std::shared_ptr<Emitter>> emitters;  // other than area
     bool has_environment = false;                    // among them
+    Portals portals;
     std::unordered_set<const Mesh*> checked;
     std::unordered_map<const Mesh*, std::unique_ptr<MeshShape>> shared;  // of the instanced meshes, in their own space
     BsdfPtr default_bsdf;

@@ -52,26 +52,25 @@ Failure EyePerturbation::perturb_primary(const PssState& x, PssState& y, Rng& rn
     return arrived(y, 0, 1, e);
 }
 
-Failure EyePerturbation::retrace(const PssState& x, PssState& y, int end, Rng& rng) const {
+Failure EyePerturbation::walk(const PssState& x, PssState& y, int end, Rng& rng) const {
     for (int i = 0; i < end; ++i) {
         const Failure failure = i == 0                   ? perturb_primary(x, y, rng)
                                 : specular(x.measure, i) ? follow(x, y, i, 1, rng)
                                                          : perturb(x, y, i, 1, kernel(x, i), rng);
         if (failure != Failure::none) return failure;
     }
-    const Vertex* const v = y.path.room.data();
-    if (end < y.path.k && !connectable(v[end])) return Failure::zero_bsdf;
-    if (const PathFailure failure = charts_.complete(y); failure != PathFailure::none) return to_failure(failure);
-    if (structure(y) != structure(x)) return Failure::outside_support;
-    for (int i = 1; i < end; ++i)
-        if (specular(y.measure, i) != specular(x.measure, i)) return Failure::outside_support;
-    return end == y.path.k || visible(tracer(), v[end], v[end + 1]) ? Failure::none : Failure::occluded;
+    if (end < y.path.k && !connectable(y.path.room[static_cast<std::size_t>(end)])) return Failure::zero_bsdf;
+    return Failure::none;
 }
 
-Proposal EyePerturbation::propose(PssState& x, PssState& y, Rng& rng) const {
-    const int end = structure(x).end;
-    keep(x, y);
-    if (const Failure failure = retrace(x, y, end, rng); failure != Failure::none) return Proposal::failed(failure);
+bool EyePerturbation::same_structure(const PssState& x, const PssState& y, const Structure& of_x) const {
+    if (structure(y) != of_x) return false;
+    for (int i = 1; i < of_x.end; ++i)
+        if (specular(y.measure, i) != specular(x.measure, i)) return false;
+    return true;
+}
+
+Perturbation::Densities EyePerturbation::walked(const PssState& x, const PssState& y, int end) const {
     Densities densities;
     for (int i = 0; i < end; ++i) {
         // Symmetric in raster space, in which the density of x_1 is a constant times E_1.
@@ -80,6 +79,20 @@ Proposal EyePerturbation::propose(PssState& x, PssState& y, Rng& rng) const {
         else
             add_perturbed(x, y, i, 1, kernel(x, i), kernel(y, i), densities);
     }
+    return densities;
+}
+
+Proposal EyePerturbation::propose(PssState& x, PssState& y, Rng& rng) const {
+    const Structure before = structure(x);
+    const int end = before.end;
+    keep(x, y);
+    if (const Failure failure = walk(x, y, end, rng); failure != Failure::none) return Proposal::failed(failure);
+    if (const PathFailure failure = charts_.complete(y); failure != PathFailure::none)
+        return Proposal::failed(to_failure(failure));
+    if (!same_structure(x, y, before)) return Proposal::failed(Failure::outside_support);
+    const Vertex* const v = y.path.room.data();
+    if (end < y.path.k && !visible(tracer(), v[end], v[end + 1])) return Proposal::failed(Failure::occluded);
+    const Densities densities = walked(x, y, end);
     return proposal(x, y, densities.forth, densities.back);
 }
 

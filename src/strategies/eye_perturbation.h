@@ -10,7 +10,7 @@ namespace keyhole {
 // followed by a rough vertex or by the emitter; x_b is connected to that one. A path whose last chain reaches the
 // emitter has b = k and is not connected. Paths of one chain are the lens perturbation's, those of more the
 // multi-chain perturbation's. Refused where y has other chains than x.
-class EyePerturbation final : public Perturbation {
+class EyePerturbation : public Perturbation {
   public:
     enum class Chains { one, many };
     EyePerturbation(ChartEvaluator& charts, Chains chains, std::unique_ptr<const StepSize> size, double roughness,
@@ -20,13 +20,18 @@ class EyePerturbation final : public Perturbation {
     bool suitability_varies() const override { return true; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
-  private:
+  protected:
     struct Structure {
         int chains = 0, end = 0;  // b
         bool operator==(const Structure&) const = default;
     };
     Structure structure(const PssState& x) const;
-    Failure retrace(const PssState& x, PssState& y, int end, Rng& rng) const;
+    // y_1 .. y_b, from the sensor; then whether y, complete, has the chains of x; and the ln T of these vertices.
+    Failure walk(const PssState& x, PssState& y, int end, Rng& rng) const;
+    bool same_structure(const PssState& x, const PssState& y, const Structure& of_x) const;
+    Densities walked(const PssState& x, const PssState& y, int end) const;
+
+  private:
     Failure perturb_primary(const PssState& x, PssState& y, Rng& rng) const;
     std::optional<Vec2> primary_raster(const PssState& x, Rng& rng) const;
 

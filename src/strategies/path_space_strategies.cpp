@@ -5,6 +5,7 @@
 #include "strategies/bidirectional.h"
 #include "strategies/caustic.h"
 #include "strategies/eye_perturbation.h"
+#include "strategies/portal.h"
 
 namespace keyhole {
 namespace {
@@ -105,13 +106,73 @@ StrategyInfo caustic() {
     return info;
 }
 
+std::string needs_portals(const Scene& scene, const PathLengths& lengths) {
+    if (scene.portals().empty()) return "the scene has no portals";
+    return lengths.max >= 2 ? "" : "it moves paths of two edges or more";
+}
+
+void add_portal_point(StrategyInfo& info) {
+    info.parameters.push_back(
+        Parameter::choice("point", {"fixed", "gaussian", "uniform"}, "how the edge's point on the portal moves"));
+    info.parameters.push_back(Parameter::number("sigma", 0.1, 0, 10, "standard deviation of its steps")
+                                  .open()
+                                  .in("times the square root of the portal's area")
+                                  .only_with("point", "gaussian"));
+}
+PortalPoint portal_point(const Values& v) {
+    using Move = PortalPoint::Move;
+    return {is(v, "point", "fixed")      ? Move::fixed
+            : is(v, "point", "gaussian") ? Move::gaussian
+                                         : Move::uniform,
+            number(v, "sigma")};
+}
+
+StrategyInfo portal() {
+    StrategyInfo info =
+        path_space("portal", "Turns an edge that passes a portal about its point there; both of its ends go along");
+    info.parameters = {
+        Parameter::choice("edge", {"nearest", "any"}, "which of the edges that pass a portal, from the sensor"),
+        Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of the direction").open().in("radians"),
+        Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().in("radians")};
+    add_portal_point(info);
+    info.contradiction = [](const Values& v) -> std::string {
+        if (number(v, "r-min") < number(v, "r-max")) return {};
+        return fmt::format("r-min = {} is not below r-max = {}", number(v, "r-min"), number(v, "r-max"));
+    };
+    info.hindrance = needs_portals;
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        using Edges = PortalCrossings::Edges;
+        return std::make_unique<PortalPerturbation>(*c.charts, is(v, "edge", "any") ? Edges::any : Edges::nearest,
+                                                    portal_point(v),
+                                                    DirectionKernel{number(v, "r-min"), number(v, "r-max")});
+    };
+    return info;
+}
+
+StrategyInfo portal_lens() {
+    StrategyInfo info = path_space("portal-lens",
+                                   "As lens, for paths that pass a portal right after: the edge turns about its point "
+                                   "there, and its far end goes along");
+    add_sizes(info, Parameter::choice("primary", {"raster", "angle"}, "how the primary ray moves"));
+    add_portal_point(info);
+    info.hindrance = needs_portals;
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<PortalLens>(*c.charts, fixed_size(v), number(v, "roughness"), raster_step(v, "primary"),
+                                            portal_point(v));
+    };
+    return info;
+}
+
 }  // namespace
 
 std::vector<StrategyInfo> path_space_strategies() {
     return {bidirectional(),
             eye_perturbation<EyePerturbation::Chains::one>(
                 "lens", "Perturbs the primary ray, follows specular vertices, and connects the first rough one"),
-            multichain(), caustic()};
+            multichain(),
+            caustic(),
+            portal(),
+            portal_lens()};
 }
 
 }  // namespace keyhole

@@ -15,12 +15,11 @@ struct MixCase {
     double mutations_per_pixel;
 };
 
-// A mix of large steps and the strategy alone.
-MixCase alone(const std::string& name, const std::string& parameters) {
-    const std::string text = "name = \"" + name +
-                             "\"\n[[strategy]]\ntype = \"large-step\"\nweight = 0.2\n[[strategy]]\nweight = 0.8\n" +
-                             parameters;
-    return {parse_mix(text, name), 1500};
+// The strategy alone, with one that reaches every path.
+MixCase alone(const std::string& name, const std::string& parameters, const std::string& ergodic = "large-step") {
+    const std::string text = "name = \"" + name + "\"\n[[strategy]]\ntype = \"" + ergodic +
+                             "\"\nweight = 0.3\n[[strategy]]\nweight = 0.7\n" + parameters;
+    return {parse_mix(text, name), 2000};
 }
 
 // Moves in path space, each alone.
@@ -32,6 +31,12 @@ const std::vector<MixCase>& path_space_moves() {
         alone("multichain", "type = \"multichain\"\nr-min = 0.02\nr-max = 0.3\nroughness = 0.3"),
         alone("caustic-raster", "type = \"caustic\""),
         alone("caustic-angle", "type = \"caustic\"\nsize = \"angle\"\nr-min = 0.02\nr-max = 0.3\nroughness = 0.3"),
+        alone("portal-fixed", "type = \"portal\"\nr-min = 0.02\nr-max = 0.5", "bidirectional"),
+        alone("portal-gaussian",
+              "type = \"portal\"\nedge = \"any\"\npoint = \"gaussian\"\nsigma = 0.2\nr-min = 0.02\nr-max = 0.5",
+              "bidirectional"),
+        alone("portal-uniform", "type = \"portal\"\npoint = \"uniform\"\nr-min = 0.02\nr-max = 0.5", "bidirectional"),
+        alone("portal-lens", "type = \"portal-lens\"\npoint = \"gaussian\"\nsigma = 0.2", "bidirectional"),
     };
     return cases;
 }
@@ -77,6 +82,7 @@ class Agrees : public testing::TestWithParam<TransportCase> {
     }
     void expect_agreement_of(const std::vector<MixCase>& mixes) {
         for (const MixCase& mix : mixes) {
+            if (scene->portals().empty() && mix.mix.name.starts_with("portal")) continue;
             const Replicates& reference = bdpt();
             settings.integrator = Integrator::mmlt;
             settings.mix = mix.mix;

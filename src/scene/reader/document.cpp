@@ -103,11 +103,22 @@ void add_to_hash(Hash& hash, const Element& element) {
 
 }  // namespace
 
-Document load_document(const std::string& filename, const std::map<std::string, std::string>& defines) {
+Document load_document(const std::string& filename, const std::map<std::string, std::string>& defines,
+                       const std::string& portals) {
     Variables variables(defines);
     Document document;
     document.filename = filename;
     document.scene = Expander(filename, variables).expand_file(filename, {});
+    if (!portals.empty()) {
+        Element side = Expander(portals, variables).expand_file(portals, {});
+        for (Element& child : side.children) {
+            const std::string* type = child.attribute("type");
+            if (child.tag != "shape" || !type || *type != "portal")
+                throw InputError(child.where, "<" + child.tag + (type ? " type=\"" + *type + "\"" : "") +
+                                                  ">: a file of portals holds <shape type=\"portal\"> alone");
+            document.scene.children.push_back(std::move(child));
+        }
+    }
     variables.check_defines(document.scene.where);
     document.unused_defaults = variables.unused();
     collect_ids(document, document.scene);

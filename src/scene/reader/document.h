@@ -22,7 +22,9 @@ struct Document {
 
 // Throws InputError for all that read_xml, the schema and the variables refuse, for include cycles, ids given twice and
 // a version that is not of Mitsuba 0.x to 3.x.
-Document load_document(const std::string& filename, const std::map<std::string, std::string>& defines);
+// What the file `portals` holds (empty: none), portals alone, is added to the scene.
+Document load_document(const std::string& filename, const std::map<std::string, std::string>& defines,
+                       const std::string& portals = {});
 
 // The plugin that a <ref> names. Throws InputError if there is none.
 const Element& resolve(const Element& ref, const Document& document);

@@ -126,7 +126,7 @@ std::uint64_t hash_of(const Context& context, const ReaderOptions& o) {
 
 LoadedScene read_scene(const std::string& filename, const ReaderOptions& options) {
     const auto start = Clock::now();
-    const Document document = load_document(filename, options.defines);
+    const Document document = load_document(filename, options.defines, options.portals);
     check_counts(document);
     Context context(document, options.lenient);
     request_assets(context);

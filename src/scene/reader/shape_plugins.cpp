@@ -52,12 +52,33 @@ void cylinder(Properties& p, Context& context) {
     context.builder.add_cylinder(p0, p1, radius, shape_options(p, context));
 }
 
+// A rectangle, or all triangles of a mesh.
+void portal(Properties& p, Context& context) {
+    const Affine to_world = p.transform("to_world");
+    const std::string* id = p.element().attribute("id");
+    const auto at = [&](double x, double y, double z) -> Vec3 { return to_world * Vec3(x, y, z); };
+    std::vector<PortalFace> faces;
+    if (const auto request = mesh_request(p, context)) {
+        const auto mesh = context.assets.mesh(*request, p.element().where);
+        for (const auto& corners : mesh->triangles) {
+            const auto corner = [&](int i) -> Vec3 {
+                return to_world * mesh->positions[static_cast<std::size_t>(corners[i])].cast<double>();
+            };
+            faces.push_back(triangle(corner(0), corner(1), corner(2)));
+        }
+    } else {
+        faces.push_back(parallelogram(at(-1, -1, 0), at(1, -1, 0) - at(-1, -1, 0), at(-1, 1, 0) - at(-1, -1, 0)));
+    }
+    context.builder.add_portal(id ? *id : "", std::move(faces));
+}
+
 void group(Properties& p, Context& context) {
     const std::string& id = p.element().required_attribute("id");
     context.builder.begin_group(id);
     for (const auto* child : p.objects("shape")) {
         const Element& shape = *child->given;
         const std::string* type = shape.attribute("type");
+        if (*type == "portal") throw InputError(shape.where, "a portal stands in the scene, not in a shapegroup");
         if (shape.tag == "ref" || *type == "shapegroup" || *type == "instance")
             throw InputError(shape.where, "a shapegroup holds shapes of its own, not groups or instances");
         for (const Element& part : shape.children)
@@ -83,6 +104,12 @@ void instance(Properties& p, Context& context) {
 std::optional<MeshRequest> mesh_request(Properties& p, const Context& context) {
     MeshRequest request;
     request.format = p.element().required_attribute("type");
+    if (request.format == "portal") {
+        if (!p.has("filename")) return std::nullopt;
+        request.filename = context.file(p, "filename");
+        request.format = request.filename.ends_with(".ply") ? "ply" : "obj";
+        return request;
+    }
     if (request.format != "obj" && request.format != "ply" && request.format != "serialized") return std::nullopt;
     request.filename = context.file(p, "filename");
     if (request.format == "serialized") request.shape_index = p.integer("shape_index", 0, 1 << 30, 0);
@@ -93,8 +120,9 @@ std::optional<MeshRequest> mesh_request(Properties& p, const Context& context) {
 
 const Plugins<ShapeMaker>& shape_plugins() {
     static const Plugins<ShapeMaker> all = {
-        {"obj", mesh},      {"ply", mesh},  {"serialized", mesh},   {"rectangle", rectangle}, {"cube", cube},
-        {"sphere", sphere}, {"disk", disk}, {"cylinder", cylinder}, {"shapegroup", group},    {"instance", instance},
+        {"obj", mesh},         {"ply", mesh},          {"serialized", mesh}, {"rectangle", rectangle},
+        {"cube", cube},        {"sphere", sphere},     {"disk", disk},       {"cylinder", cylinder},
+        {"shapegroup", group}, {"instance", instance}, {"portal", portal},
     };
     return all;
 }
