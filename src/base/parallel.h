@@ -12,6 +12,7 @@
 #else
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #endif
 
 namespace keyhole {
@@ -28,6 +29,12 @@ void parallel_for(std::size_t count, const Body& body) {
             for (std::size_t i = jobs.begin(); i != jobs.end(); ++i) body(i);
         },
         tbb::simple_partitioner());
+}
+
+// Calls body() so that loops in it do not take up jobs from outside: for what a thread does under a lock.
+template <class Body>
+auto isolated(const Body& body) {
+    return tbb::this_task_arena::isolate(body);
 }
 #else
 // The thread sanitizer cannot see how TBB's compiled library orders the memory accesses of its threads, and takes every
@@ -50,6 +57,10 @@ void parallel_for(std::size_t count, const Body& body) {
     for (std::size_t i = 0; i < std::size_t{4} && i < count; ++i) threads.emplace_back(work);
     for (std::thread& thread : threads) thread.join();
     if (error) std::rethrow_exception(error);
+}
+template <class Body>
+auto isolated(const Body& body) {
+    return body();
 }
 #endif
 

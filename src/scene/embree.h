@@ -104,6 +104,19 @@ class EmbreeScene {
     // Builds the groups, then the scene. Throws std::runtime_error if Embree reports an error.
     void commit();
 
+    // Calls visit(shape, to_world) for every shape as it is seen, through instances too, relative to the scene's
+    // origin.
+    template <class Visit>
+    void for_each_shape(const Visit& visit) const {
+        for (const Shape* shape : top_->shapes_)
+            if (shape) visit(*shape, Affine::Identity());
+        for (const auto& instance : instances_) {
+            if (!instance) continue;
+            for (const Shape* shape : instance->group->shapes_)
+                if (shape) visit(*shape, instance->transform.to_world);
+        }
+    }
+
     EmbreeBounds bounds() const;
     std::size_t bytes() const { return static_cast<std::size_t>(bytes_.load()); }
 

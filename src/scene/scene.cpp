@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/box_hierarchy.h"
 #include "scene/embree.h"
 #include "scene/shapes/mesh_shape.h"
 
@@ -41,6 +42,11 @@ bool Scene::unoccluded(const Ray& ray) const {
     Ray moved = ray;
     moved.o -= origin_;
     return embree_->unoccluded(moved);
+}
+
+const BoxHierarchy& Scene::boxes() const {
+    std::call_once(boxes_flag_, [this] { boxes_ = std::make_unique<const BoxHierarchy>(*embree_, origin_); });
+    return *boxes_;
 }
 
 std::uint32_t Scene::choose_emitter(double u) const {

@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
-
 
 #include "scene/bsdf.h"
 #include "scene/emitter.h"
@@ -19,7 +19,8 @@
 
 namespace keyhole {
 
-class EmbreeScene;  // embree.h
+class BoxHierarchy;  // box_hierarchy.h
+class EmbreeScene;   // embree.h
 
 // What is to be known of a hit. `emitter`: of a surface that emits nothing, nothing but that.
 enum class Wanted { surface, emitter };
@@ -84,6 +85,9 @@ class Scene {
 
     const Portals& portals() const { return portals_; }
 
+    // Built when it is first asked for.
+    const BoxHierarchy& boxes() const;
+
     const EmbreeScene& embree() const { return *embree_; }
     // Shapes and Embree's hierarchy have coordinates relative to this point: zero, but for scenes far from it, where
     // floats are coarse.
@@ -108,6 +112,8 @@ class Scene {
     bool moved_ = false;  // origin_ is not zero
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::unique_ptr<EmbreeScene> embree_;
+    mutable std::once_flag boxes_flag_;
+    mutable std::unique_ptr<const BoxHierarchy> boxes_;
     std::vector<std::shared_ptr<const Emitter>> owned_emitters_;
     std::vector<const Emitter*> emitters_;
     std::vector<double> emitter_cdf_;  // entry i: probability of emitters 0 to i
