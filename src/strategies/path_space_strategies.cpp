@@ -4,6 +4,7 @@
 
 #include "strategies/bidirectional.h"
 #include "strategies/caustic.h"
+#include "strategies/cone_step_size.h"
 #include "strategies/eye_perturbation.h"
 #include "strategies/portal.h"
 
@@ -106,6 +107,65 @@ StrategyInfo caustic() {
     return info;
 }
 
+// Geometry-aware versions: sizes from cones.
+void add_cones(StrategyInfo& info) {
+    info.parameters = {
+        Parameter::choice("estimator", {"bvh-cut", "fast", "exact"}, "how the empty cone about an edge is found"),
+        Parameter::integer("boxes", 10, 0, 10000, "how many boxes are opened at most")
+            .only_with("estimator", "bvh-cut"),
+        Parameter::number("alpha", 0.1, 0, 0.99, "smallest step over the largest, which is the cone's half-angle")
+            .open(),
+        Parameter::number("t1", 1e-4, 0, 0.5, "where the cone begins, in lengths of the edge").open(),
+        Parameter::number("t2", 0.99, 0.5, 1, "where it ends"),
+        Parameter::number("tau-min", 0.01, 0, 1.5, "smallest half-angle").open().in("radians"),
+        Parameter::number("tau-max", 0.5, 0, 1.5, "largest half-angle").open().in("radians"),
+        roughness()};
+    info.contradiction = [](const Values& v) -> std::string {
+        if (number(v, "tau-min") <= number(v, "tau-max")) return {};
+        return fmt::format("tau-min = {} is above tau-max = {}", number(v, "tau-min"), number(v, "tau-max"));
+    };
+}
+std::unique_ptr<const StepSize> cone_size(const StrategyContext& c, const Values& v) {
+    ConeSettings settings;
+    settings.estimator = is(v, "estimator", "fast")    ? ConeEstimator::fast
+                         : is(v, "estimator", "exact") ? ConeEstimator::exact
+                                                       : ConeEstimator::bvh_cut;
+    settings.boxes = static_cast<int>(std::get<std::int64_t>(v.at("boxes")));
+    settings.t1 = number(v, "t1");
+    settings.t2 = number(v, "t2");
+    settings.tau_min = number(v, "tau-min");
+    settings.tau_max = number(v, "tau-max");
+    return std::make_unique<ConeStepSize>(c.charts->tracer().scene(), settings, number(v, "alpha"));
+}
+
+template <EyePerturbation::Chains chains>
+StrategyInfo eye_perturbation_geo(const char* name, const char* description) {
+    StrategyInfo info = path_space(name, description);
+    add_cones(info);
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<EyePerturbation>(*c.charts, chains, cone_size(c, v), number(v, "roughness"),
+                                                 RasterStep{});
+    };
+    return info;
+}
+
+StrategyInfo multichain_geo() {
+    StrategyInfo info = eye_perturbation_geo<EyePerturbation::Chains::many>(
+        "multichain-geo", "As multichain, with steps as large as the empty cones about the edges");
+    info.hindrance = needs_three_edges;
+    return info;
+}
+
+StrategyInfo caustic_geo() {
+    StrategyInfo info = path_space("caustic-geo", "As caustic, with steps as large as the empty cone about the edge");
+    add_cones(info);
+    info.hindrance = needs_three_edges;
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<CausticPerturbation>(*c.charts, cone_size(c, v), RasterStep{}, number(v, "roughness"));
+    };
+    return info;
+}
+
 std::string needs_portals(const Scene& scene, const PathLengths& lengths) {
     if (scene.portals().empty()) return "the scene has no portals";
     return lengths.max >= 2 ? "" : "it moves paths of two edges or more";
@@ -171,6 +231,10 @@ std::vector<StrategyInfo> path_space_strategies() {
                 "lens", "Perturbs the primary ray, follows specular vertices, and connects the first rough one"),
             multichain(),
             caustic(),
+            eye_perturbation_geo<EyePerturbation::Chains::one>(
+                "lens-geo", "As lens, with steps as large as the empty cone about the primary edge"),
+            multichain_geo(),
+            caustic_geo(),
             portal(),
             portal_lens()};
 }
