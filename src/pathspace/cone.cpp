@@ -112,24 +112,6 @@ Vec3 corner(const Vec3& lower, const Vec3& upper, int i) {
     return {i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(), i & 4 ? upper.z() : lower.z()};
 }
 
-// Whether the axis between the planes meets the box.
-bool meets(const ConeEdge& edge, const ConeSettings& settings, const BoxHierarchy::Node& node) {
-    double begin = settings.t1 * edge.length, end = settings.t2 * edge.length;
-    for (int i = 0; i < 3; ++i) {
-        const double o = edge.apex[i], d = edge.axis[i], lower = double(node.lower[i]), upper = double(node.upper[i]);
-        if (d == 0) {
-            if (o < lower || o > upper) return false;
-            continue;
-        }
-        const double a = (lower - o) / d, b = (upper - o) / d;
-        begin = std::max(begin, std::min(a, b));
-        end = std::min(end, std::max(a, b));
-    }
-    return begin <= end;
-}
-
-bool wider(double a, double b) { return a > b; }
-
 }  // namespace
 
 double least_angle(const ConeEdge& edge, const ConeSettings& settings, const BoxHierarchy::Triangle& triangle) {
@@ -155,15 +137,74 @@ ConeFinder::ConeFinder(const BoxHierarchy& boxes, const ConeSettings& settings) 
     queue_.reserve(1024);
 }
 
+// What is computed once for an edge.
+struct ConeFinder::Query {
+    const ConeEdge& edge;
+    const ConeSettings& settings;
+    Slab slab;
+    Vec3 inverse;  // of the axis, by coordinate
+    double begin, end, tan_max;
+    double steep;     // cosine to a plane's normal that the cone of tau_max does not reach the plane from
+    double farthest;  // along the axis, of points before the far plane and in the cone of tau_max
+
+    Query(const ConeEdge& e, const ConeSettings& s)
+        : edge(e),
+          settings(s),
+          slab(e, s),
+          inverse(e.axis.cwiseInverse()),
+          begin(s.t1 * e.length),
+          end(s.t2 * e.length),
+          tan_max(std::tan(s.tau_max)),
+          steep(std::sin(std::min(s.tau_max + 1.001e-3, 0.5 * pi))) {
+        const double towards = slab.n.dot(slab.w);
+        const double reach = towards - tan_max * std::sqrt(std::max(0.0, 1 - towards * towards));
+        farthest = reach > 0 ? slab.far / reach : infinity;
+    }
+
+    // Whether the axis between the planes meets the box. (Where it lies in the plane of a side, NaN counts as met.)
+    bool meets(const BoxHierarchy::Node& node) const {
+        const Vec3 a = (node.lower.cast<double>() - edge.apex).cwiseProduct(inverse);
+        const Vec3 b = (node.upper.cast<double>() - edge.apex).cwiseProduct(inverse);
+        const double from = std::max(begin, a.cwiseMin(b).maxCoeff()), to = std::min(end, a.cwiseMax(b).minCoeff());
+        return !(from > to);
+    }
+
+    // A lower bound of the angle; infinite where the box is outside of the slab or of the cone of the half-angle
+    // tau_max.
+    double bound(const BoxHierarchy::Node& node) const {
+        const Vec3 lower = node.lower.cast<double>() - edge.apex, upper = node.upper.cast<double>() - edge.apex;
+        // Behind a plane through the apex that the axis leaves at a larger angle, as the surface is that it starts on:
+        // of the box, less than a thousandth of the distance to the near plane may be before it.
+        for (int i = 0; i < 3; ++i)
+            if ((lower[i] >= -1e-3 * begin && slab.w[i] < -steep) || (upper[i] <= 1e-3 * begin && slab.w[i] > steep))
+                return infinity;
+        const Vec3 c = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
+        const auto extent = [&](const Vec3& direction) { return half.dot(direction.cwiseAbs()); };
+        const double along = slab.w.dot(c), along_most = along + extent(slab.w);
+        if (along_most < slab.near || slab.n.dot(c) - extent(slab.n) > slab.far) return infinity;
+        // Farther from the axis than its nearest side, and nearer along it than its far end or the slab's.
+        const Vec3 across = c - along * slab.w;
+        const double distance = across.norm();
+        if (!(distance > 0)) return 0;
+        const double gap = distance - extent(across / distance), length = std::min(along_most, farthest);
+        if (gap >= tan_max * length) return infinity;
+        return gap > 0 ? std::atan(gap / length) * (1 - 1e-12) : 0;
+    }
+    double angle(const BoxHierarchy& boxes, const BoxHierarchy::Node& node) const {
+        return node.leaf ? least_angle(edge, settings, boxes.triangle(node))
+                         : least_angle(edge, settings, node.lower.cast<double>(), node.upper.cast<double>());
+    }
+};
+
 // Visits the boxes that the edge does not meet, of parents that it meets, and leaves that it meets.
 template <class Visit>
-void ConeFinder::initial_cut(const ConeEdge& edge, const Visit& visit) {
+void ConeFinder::initial_cut(const Query& query, const Visit& visit) {
     if (boxes_->empty()) return;
     stack_.assign(1, &boxes_->root());
     while (!stack_.empty()) {
         const BoxHierarchy::Node& node = *stack_.back();
         stack_.pop_back();
-        const bool met = meets(edge, settings_, node);
+        const bool met = query.meets(node);
         if (!met || node.leaf) {
             visit(node, met);
             continue;
@@ -173,47 +214,57 @@ void ConeFinder::initial_cut(const ConeEdge& edge, const Visit& visit) {
     }
 }
 
-double ConeFinder::fast(const ConeEdge& edge) {
-    const Slab slab(edge, settings_);
-    LeastAngle least(slab.w);
-    initial_cut(edge, [&](const BoxHierarchy::Node& node, bool met) {
-        if (met) return;
-        const Vec3 lower = node.lower.cast<double>() - edge.apex, upper = node.upper.cast<double>() - edge.apex;
+double ConeFinder::fast(const Query& query) {
+    LeastAngle least(query.slab.w);
+    initial_cut(query, [&](const BoxHierarchy::Node& node, bool met) {
+        if (met || query.bound(node) == infinity) return;
+        const Vec3 lower = node.lower.cast<double>() - query.edge.apex,
+                   upper = node.upper.cast<double>() - query.edge.apex;
         for (int i = 0; i < 8; ++i) {
             const Vec3 p = corner(lower, upper, i);
-            if (slab.before_near(p) <= 0 && slab.behind_far(p) <= 0) least.point(p);
+            if (query.slab.before_near(p) <= 0 && query.slab.behind_far(p) <= 0) least.point(p);
         }
     });
     return least.angle();
 }
 
-void ConeFinder::push(const ConeEdge& edge, const BoxHierarchy::Node& node) {
-    const double angle = node.leaf ? least_angle(edge, settings_, boxes_->triangle(node))
-                                   : least_angle(edge, settings_, node.lower.cast<double>(), node.upper.cast<double>());
-    if (!(angle < settings_.tau_max)) return;
-    queue_.push_back({angle, &node});
-    std::push_heap(queue_.begin(), queue_.end(),
-                   [](const Entry& a, const Entry& b) { return wider(a.angle, b.angle); });
+void ConeFinder::push(const Entry& entry) {
+    if (!(entry.angle < settings_.tau_max)) return;
+    queue_.push_back(entry);
+    std::push_heap(queue_.begin(), queue_.end(), [](const Entry& a, const Entry& b) { return a.angle > b.angle; });
 }
 
-double ConeFinder::refined(const ConeEdge& edge, int boxes) {
+ConeFinder::Entry ConeFinder::pop() {
+    std::pop_heap(queue_.begin(), queue_.end(), [](const Entry& a, const Entry& b) { return a.angle > b.angle; });
+    const Entry entry = queue_.back();
+    queue_.pop_back();
+    return entry;
+}
+
+// Best first. Angles are computed only of what comes first by its bound.
+double ConeFinder::refined(const Query& query, std::size_t boxes) {
     queue_.clear();
-    initial_cut(edge, [&](const BoxHierarchy::Node& node, bool) { push(edge, node); });
-    for (int opened = 0; !queue_.empty(); ++opened) {
-        const Entry narrowest = queue_.front();
-        if (narrowest.node->leaf || opened == boxes) return narrowest.angle;
-        std::pop_heap(queue_.begin(), queue_.end(),
-                      [](const Entry& a, const Entry& b) { return wider(a.angle, b.angle); });
-        queue_.pop_back();
-        for (int i = 0; i < 2; ++i) push(edge, boxes_->child(*narrowest.node, i));
+    const auto push_bound = [&](const BoxHierarchy::Node& node) { push({query.bound(node), &node, false}); };
+    initial_cut(query, [&](const BoxHierarchy::Node& node, bool) { push_bound(node); });
+    while (!queue_.empty()) {
+        const Entry narrowest = pop();
+        if (!narrowest.known) {
+            push({query.angle(*boxes_, *narrowest.node), narrowest.node, true});
+            continue;
+        }
+        // The narrowest itself is one of them.
+        if (narrowest.node->leaf || queue_.size() + 1 >= boxes) return narrowest.angle;
+        for (int i = 0; i < 2; ++i) push_bound(boxes_->child(*narrowest.node, i));
     }
     return infinity;
 }
 
 double ConeFinder::operator()(const ConeEdge& edge) {
-    const double angle = settings_.estimator == ConeEstimator::fast      ? fast(edge)
-                         : settings_.estimator == ConeEstimator::bvh_cut ? refined(edge, settings_.boxes)
-                                                                         : refined(edge, -1);
+    const Query query(edge, settings_);
+    const double angle = settings_.estimator == ConeEstimator::fast ? fast(query)
+                         : settings_.estimator == ConeEstimator::bvh_cut
+                             ? refined(query, static_cast<std::size_t>(settings_.boxes))
+                             : refined(query, std::numeric_limits<std::size_t>::max());
     return std::clamp(angle, settings_.tau_min, settings_.tau_max);
 }
 

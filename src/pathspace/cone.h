@@ -39,15 +39,19 @@ class ConeFinder {
     const ConeSettings& settings() const { return settings_; }
 
   private:
+    // A part of the scene, under the angle given or a larger one; `known`: exactly that one.
     struct Entry {
         double angle;
         const BoxHierarchy::Node* node;
+        bool known;
     };
+    struct Query;
     template <class Visit>
-    void initial_cut(const ConeEdge& edge, const Visit& visit);
-    double fast(const ConeEdge& edge);
-    double refined(const ConeEdge& edge, int boxes);
-    void push(const ConeEdge& edge, const BoxHierarchy::Node& node);
+    void initial_cut(const Query& query, const Visit& visit);
+    double fast(const Query& query);
+    double refined(const Query& query, std::size_t boxes);
+    void push(const Entry& entry);
+    Entry pop();
 
     const BoxHierarchy* boxes_;
     ConeSettings settings_;

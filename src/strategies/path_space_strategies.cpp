@@ -111,7 +111,7 @@ StrategyInfo caustic() {
 void add_cones(StrategyInfo& info) {
     info.parameters = {
         Parameter::choice("estimator", {"bvh-cut", "fast", "exact"}, "how the empty cone about an edge is found"),
-        Parameter::integer("boxes", 10, 0, 10000, "how many boxes are opened at most")
+        Parameter::integer("boxes", 10, 0, 10000, "boxes beside the edge from which on none is opened any more")
             .only_with("estimator", "bvh-cut"),
         Parameter::number("alpha", 0.1, 0, 0.99, "smallest step over the largest, which is the cone's half-angle")
             .open(),
