@@ -25,6 +25,9 @@ void add_mixes_command(CLI::App& keyhole, Runner& runner);
 void add_compare_command(CLI::App& keyhole, Runner& runner);
 void add_sweep_command(CLI::App& keyhole, Runner& runner);
 void add_roundtrip_command(CLI::App& keyhole, Runner& runner);
+void add_portals_command(CLI::App& keyhole, Runner& runner);
+void add_cones_command(CLI::App& keyhole, Runner& runner);
+void add_trace_command(CLI::App& keyhole, Runner& runner);
 void add_experiment_command(CLI::App& keyhole, Runner& runner);
 
 }  // namespace keyhole

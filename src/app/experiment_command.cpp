@@ -28,6 +28,7 @@ Examples:
   keyhole experiment charted-toy -o out/toy --runs 3 --scale 0.1
       A tenth of the published numbers of samples
   keyhole experiment proposal-failures -o out/failures -t 5s
+  keyhole experiment acceptance -o out/acceptance --scene ajar-door/scene.xml
 
 Exit codes: 0 done; 1 failure while running; 2 options or input not valid; 130,
 143, 129 ended by Ctrl-C, SIGTERM, SIGHUP.)";
@@ -98,6 +99,8 @@ void add_experiment_command(CLI::App& keyhole, Runner& runner) {
         ->option_text("DIR");
     command->add_option("--scenes", e.scenes, "Folder of the project's own scenes [default: scenes]")
         ->option_text("DIR");
+    command->add_option("--scene", e.scene_files, "Another scene file for acceptance (repeatable)")
+        ->option_text("FILE");
     add_integer(*command, "--runs", e.runs, 2, 100000, "Independent runs [default: the experiment's]");
     const auto seconds = [](double& value) {
         return [&value](const std::string& text) { value = parse_duration(text); };

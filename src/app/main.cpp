@@ -77,6 +77,9 @@ int run(int argc, char** argv) {
     add_bench_command(keyhole, runner);
     add_mixes_command(keyhole, runner);
     add_roundtrip_command(keyhole, runner);
+    add_portals_command(keyhole, runner);
+    add_cones_command(keyhole, runner);
+    add_trace_command(keyhole, runner);
     add_experiment_command(keyhole, runner);
     try {
         keyhole.parse(argc, argv);

@@ -11,7 +11,10 @@ std::span<const Experiment> experiments() {
          "depend on the state",
          run_proposal_failures_1d},
         {"proposal-failures", "MMLT with each policy for failing proposals on three scenes: error over time",
-         run_proposal_failures}};
+         run_proposal_failures},
+        {"acceptance",
+         "Acceptance of perturbations, with steps of one size and as large as empty cones [Otsu et al. 2018, table 1]",
+         run_acceptance}};
     return list;
 }
 

@@ -10,6 +10,7 @@ namespace keyhole {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t all_boxes = std::numeric_limits<std::size_t>::max();
 
 // The space between the cone's planes, from the apex: t1 L <= w.p, and n.(p - t2 L w) <= 0 with n towards the far end.
 struct Slab {
@@ -41,12 +42,17 @@ class LeastAngle {
     void point(const Vec3& p) {
         const double along = w_.dot(p);
         if (!(along > 0)) return;
-        tan2_ = std::min(tan2_, std::max(0.0, (p - along * w_).squaredNorm() / (along * along)));
+        const double tan2 = (p - along * w_).squaredNorm() / (along * along);
+        if (!(tan2 < tan2_)) return;
+        tan2_ = tan2;
+        point_ = p;
     }
+    const Vec3& where() const { return point_; }
     double angle() const { return tan2_ < infinity ? std::atan(std::sqrt(tan2_)) : infinity; }
 
   private:
     const Vec3& w_;
+    Vec3 point_{0, 0, 0};
     double tan2_ = infinity;
 };
 
@@ -67,6 +73,9 @@ class Outline {
         chords(far_points_, far_count_, [&](const Vec3& p) { return slab_.before_near(p); });
         return least_.angle();
     }
+
+    // After angle(), from the apex.
+    const Vec3& where() const { return least_.where(); }
 
   private:
     static constexpr std::size_t most = 12;
@@ -112,13 +121,17 @@ Vec3 corner(const Vec3& lower, const Vec3& upper, int i) {
     return {i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(), i & 4 ? upper.z() : lower.z()};
 }
 
+void add_triangle(Outline& outline, const ConeEdge& edge, const BoxHierarchy::Triangle& triangle) {
+    const std::array<Vec3, 3> p = {triangle[0] - edge.apex, triangle[1] - edge.apex, triangle[2] - edge.apex};
+    for (std::size_t i = 0; i < 3; ++i) outline.edge(p[i], p[(i + 1) % 3]);
+}
+
 }  // namespace
 
 double least_angle(const ConeEdge& edge, const ConeSettings& settings, const BoxHierarchy::Triangle& triangle) {
     const Slab slab(edge, settings);
     Outline outline(slab);
-    const std::array<Vec3, 3> p = {triangle[0] - edge.apex, triangle[1] - edge.apex, triangle[2] - edge.apex};
-    for (std::size_t i = 0; i < 3; ++i) outline.edge(p[i], p[(i + 1) % 3]);
+    add_triangle(outline, edge, triangle);
     return outline.angle();
 }
 
@@ -242,7 +255,7 @@ ConeFinder::Entry ConeFinder::pop() {
 }
 
 // Best first. Angles are computed only of what comes first by its bound.
-double ConeFinder::refined(const Query& query, std::size_t boxes) {
+ConeFinder::Entry ConeFinder::refined(const Query& query, std::size_t boxes) {
     queue_.clear();
     const auto push_bound = [&](const BoxHierarchy::Node& node) { push({query.bound(node), &node, false}); };
     initial_cut(query, [&](const BoxHierarchy::Node& node, bool) { push_bound(node); });
@@ -253,19 +266,29 @@ double ConeFinder::refined(const Query& query, std::size_t boxes) {
             continue;
         }
         // The narrowest itself is one of them.
-        if (narrowest.node->leaf || queue_.size() + 1 >= boxes) return narrowest.angle;
+        if (narrowest.node->leaf || queue_.size() + 1 >= boxes) return narrowest;
         for (int i = 0; i < 2; ++i) push_bound(boxes_->child(*narrowest.node, i));
     }
-    return infinity;
+    return {infinity, nullptr, true};
 }
 
 double ConeFinder::operator()(const ConeEdge& edge) {
     const Query query(edge, settings_);
     const double angle = settings_.estimator == ConeEstimator::fast ? fast(query)
                          : settings_.estimator == ConeEstimator::bvh_cut
-                             ? refined(query, static_cast<std::size_t>(settings_.boxes))
-                             : refined(query, std::numeric_limits<std::size_t>::max());
+                             ? refined(query, static_cast<std::size_t>(settings_.boxes)).angle
+                             : refined(query, all_boxes).angle;
     return std::clamp(angle, settings_.tau_min, settings_.tau_max);
+}
+
+std::optional<Vec3> ConeFinder::contact(const ConeEdge& edge) {
+    const Entry nearest = refined(Query(edge, settings_), all_boxes);
+    if (!nearest.node) return std::nullopt;
+    const Slab slab(edge, settings_);
+    Outline outline(slab);
+    add_triangle(outline, edge, boxes_->triangle(*nearest.node));
+    outline.angle();
+    return edge.apex + outline.where();
 }
 
 }  // namespace keyhole

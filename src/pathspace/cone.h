@@ -1,6 +1,7 @@
 // The largest empty cone about an edge of a path [Otsu et al. 2018; theory, section 8].
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "scene/box_hierarchy.h"
@@ -36,6 +37,9 @@ class ConeFinder {
     // `bvh-cut` is never above `exact`.
     double operator()(const ConeEdge& edge);
 
+    // The point that bounds the exact cone, whatever the estimator; empty where none does within tau_max.
+    std::optional<Vec3> contact(const ConeEdge& edge);
+
     const ConeSettings& settings() const { return settings_; }
 
   private:
@@ -49,7 +53,7 @@ class ConeFinder {
     template <class Visit>
     void initial_cut(const Query& query, const Visit& visit);
     double fast(const Query& query);
-    double refined(const Query& query, std::size_t boxes);
+    Entry refined(const Query& query, std::size_t boxes);
     void push(const Entry& entry);
     Entry pop();
 
