@@ -70,7 +70,7 @@ void add_portals_command(CLI::App& keyhole, Runner& runner) {
     command->add_option("-o,--output", options->output, "Scene file of portals [default: portals.xml]")
         ->option_text("FILE");
     PortalSearch& s = options->search;
-    add_integer(*command, "--paths", s.paths, 100, 1000000, "Paths with light to look at [default: 4000]");
+    add_integer(*command, "--paths", s.paths, 100, 1000000, "Paths with light that are enough [default: 40000]");
     add_integer(*command, "--tries", s.tries, std::int64_t{1000}, std::int64_t{1000000000000},
                 "Paths to draw for that at most [default: 2000000]");
     add_integer(*command, "--most", s.most, 1, 1000, "Portals at most [default: 8]");

@@ -12,7 +12,7 @@ namespace keyhole {
 
 struct PortalSearch {
     std::int64_t tries = 2000000;  // paths drawn at most
-    int paths = 4000;              // paths with light that are enough
+    int paths = 40000;             // paths with light that are enough; a few thousand of them are looked at
     int most = 8;                  // portals proposed at most
     double least_share = 0.05;     // of the light, that passes a portal
     int max_length = 0;            // 0: what the scene says, else 8
@@ -26,7 +26,7 @@ struct FoundPortal {
 };
 
 struct FoundPortals {
-    std::vector<FoundPortal> portals;  // the one that most paths pass first
+    std::vector<FoundPortal> portals;  // the one that most light passes first
     std::int64_t tries = 0;
     int paths = 0;
 };
