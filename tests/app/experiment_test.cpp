@@ -44,6 +44,18 @@ TEST_F(ExperimentTest, OneDimensionShowsTheBiasOfExclusion) {
         }
 }
 
+TEST_F(ExperimentTest, GeometryAwareStepsAreAcceptedMoreOften) {
+    const Finished done = run({"experiment", "acceptance", "-o", "out", "-t", "0.3s", "--scenes", scenes});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    const nlohmann::json rows = json("out/results.json")["rows"];
+    ASSERT_EQ(rows.size(), 18u);
+    for (std::size_t i = 0; i < rows.size(); i += 3)
+        EXPECT_GT(rows[i + 2]["perturbation_acceptance"].get<double>(),
+                  1.5 * rows[i]["perturbation_acceptance"].get<double>())
+            << rows[i]["scene"];
+    EXPECT_TRUE(std::filesystem::exists(path("out/picture.svg")));
+}
+
 TEST_F(ExperimentTest, TheChartedToyRunsAtASmallScale) {
     const Finished done = run({"experiment", "charted-toy", "-o", "out", "--runs", "2", "--scale", "0.002",
                                "--reference-time", "1s", "--scenes", scenes});

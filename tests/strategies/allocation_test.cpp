@@ -8,6 +8,7 @@
 #include "chain/mixing.h"
 #include "chain/running_mean.h"
 #include "mmlt_chain.h"
+#include "strategies/registry.h"
 
 namespace {
 std::atomic<std::uint64_t> allocations{0}, allocated_bytes{0};
@@ -57,6 +58,39 @@ TEST_P(Loop, AllocatesNothing) {
     EXPECT_GT(allocations, before);
     EXPECT_GT(copy.target, 0);
 }
+
+class PathLoop : public testing::TestWithParam<std::string> {};
+
+// Moves in path space, cones and portals included, and moves in primary sample space from the paths that they leave.
+TEST_P(PathLoop, AllocatesNothing) {
+    const auto scene = own_scene(GetParam());
+    const CoordinateLayout layout(*scene, 8);
+    ChartEvaluator charts(*scene, layout, {}, {.path = true, .forgets = true, .measure = true});
+    const TechniqueDistribution techniques(1, 8);
+    const StrategyContext context{charts, &charts, techniques, {1, 8}, {}};
+    std::vector<Mixture<PssState, Rng>::Component> components;
+    for (const StrategyInfo& info : strategy_registry()) {
+        Values values;
+        for (const Parameter& p : info.parameters) values[p.name] = p.fallback;
+        if (info.hindrance(*scene, {1, 8}).empty()) components.push_back({info.make(context, values), 1});
+    }
+    const Mixture<PssState, Rng> mixture(std::move(components));
+    PssState start = charts.make_state();
+    Rng rng(1);
+    const LargeStep large(charts, techniques);
+    for (int i = 0; i < 1000000 && !(start.target > 0); ++i) large.draw(start, rng);
+    ASSERT_GT(start.target, 0);
+    Chain<PssState> chain(start);
+    Diagnostics diagnostics(mixture.size());
+    NoFilm film;
+    for (int i = 0; i < 3000; ++i) chain.step(mixture, rng, film, diagnostics);
+    const std::uint64_t before = allocations;
+    for (int i = 0; i < 20000; ++i) chain.step(mixture, rng, film, diagnostics);
+    EXPECT_EQ(allocations, before);
+}
+
+INSTANTIATE_TEST_SUITE_P(OwnScenes, PathLoop, testing::ValuesIn(own_scene_names()),
+                         [](const auto& test) { return test_name_of(test.param); });
 
 INSTANTIATE_TEST_SUITE_P(OwnScenes, Loop, testing::ValuesIn(own_scene_names()),
                          [](const auto& test) { return test_name_of(test.param); });
