@@ -60,10 +60,11 @@ class PortalPerturbation final : public PathMove {
     bool suitability_varies() const override { return true; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
+    // ln of dA_c dsigma over dA_p dA_{p+1}: the edge's geometry term over the portal's cosine.
+    double log_jacobian(const PssState& x, int edge, std::uint32_t face) const;
+
   private:
     Failure pivot(const PssState& x, PssState& y, int edge, const Portals::Point& c, Rng& rng) const;
-    // ln of dA_c dsigma_perp over dA_p dA_{p+1}: the edge's geometry term without the portal's cosine.
-    double log_jacobian(const PssState& x, int edge, std::uint32_t face) const;
 
     PortalCrossings crossings_;
     PortalPoint point_;
