@@ -35,8 +35,11 @@ class LeastAngle {
     void segment(const Vec3& p, const Vec3& e) {
         point(p);
         point(p + e);
-        const double a = w_.dot(p), b = w_.dot(e), c = p.squaredNorm(), d = p.dot(e), f = e.squaredNorm();
-        const double s = (a * d - b * c) / (b * d - a * f);
+        inside(p, e, w_.dot(p), w_.dot(e), p.squaredNorm(), p.dot(e), e.squaredNorm());
+    }
+    // The same without the ends, by w.p, w.e, p.p, p.e and e.e.
+    void inside(const Vec3& p, const Vec3& e, double wp, double we, double pp, double pe, double ee) {
+        const double s = (wp * pe - we * pp) / (we * pe - wp * ee);
         if (s > 0 && s < 1) point(p + s * e);
     }
     void point(const Vec3& p) {
@@ -62,11 +65,29 @@ class Outline {
   public:
     explicit Outline(const Slab& slab) : slab_(slab), least_(slab.w) {}
 
-    void edge(const Vec3& p, const Vec3& q) {
+    // A corner, from the apex, with what its edges share.
+    struct Corner {
+        Vec3 p;
+        double along, square, before_near, behind_far;
+        bool inside() const { return before_near <= 0 && behind_far <= 0; }
+    };
+    Corner corner(const Vec3& p) {
+        const double along = slab_.w.dot(p);
+        const Corner c{p, along, p.squaredNorm(), slab_.near - along, slab_.behind_far(p)};
+        if (c.inside()) least_.point(p);
+        return c;
+    }
+    void edge(const Corner& p, const Corner& q) {
+        const Vec3 e = q.p - p.p;
+        if (p.inside() && q.inside()) {
+            const double pq = p.p.dot(q.p);
+            least_.inside(p.p, e, p.along, q.along - p.along, p.square, pq - p.square, p.square - 2 * pq + q.square);
+            return;
+        }
         double begin = 0, end = 1;
-        cut(slab_.before_near(p), slab_.before_near(q), p, q, near_points_, near_count_, begin, end);
-        cut(slab_.behind_far(p), slab_.behind_far(q), p, q, far_points_, far_count_, begin, end);
-        if (begin <= end) least_.segment(p + begin * (q - p), (end - begin) * (q - p));
+        cut(p.before_near, q.before_near, p.p, q.p, near_points_, near_count_, begin, end);
+        cut(p.behind_far, q.behind_far, p.p, q.p, far_points_, far_count_, begin, end);
+        if (begin <= end) least_.segment(p.p + begin * e, (end - begin) * e);
     }
     double angle() {
         chords(near_points_, near_count_, [&](const Vec3& p) { return slab_.behind_far(p); });
@@ -122,8 +143,10 @@ Vec3 corner(const Vec3& lower, const Vec3& upper, int i) {
 }
 
 void add_triangle(Outline& outline, const ConeEdge& edge, const BoxHierarchy::Triangle& triangle) {
-    const std::array<Vec3, 3> p = {triangle[0] - edge.apex, triangle[1] - edge.apex, triangle[2] - edge.apex};
-    for (std::size_t i = 0; i < 3; ++i) outline.edge(p[i], p[(i + 1) % 3]);
+    const std::array<Outline::Corner, 3> corners = {outline.corner(triangle[0] - edge.apex),
+                                                    outline.corner(triangle[1] - edge.apex),
+                                                    outline.corner(triangle[2] - edge.apex)};
+    for (std::size_t i = 0; i < 3; ++i) outline.edge(corners[i], corners[(i + 1) % 3]);
 }
 
 }  // namespace
@@ -139,9 +162,11 @@ double least_angle(const ConeEdge& edge, const ConeSettings& settings, const Vec
     const Slab slab(edge, settings);
     Outline outline(slab);
     const Vec3 l = lower - edge.apex, u = upper - edge.apex;
-    for (int i = 0; i < 8; ++i)
-        for (int bit = 1; bit < 8; bit <<= 1)
-            if (!(i & bit)) outline.edge(corner(l, u, i), corner(l, u, i | bit));
+    std::array<Outline::Corner, 8> corners;
+    for (int i = 0; i < 8; ++i) corners[static_cast<std::size_t>(i)] = outline.corner(corner(l, u, i));
+    for (std::size_t i = 0; i < 8; ++i)
+        for (std::size_t bit = 1; bit < 8; bit <<= 1)
+            if (!(i & bit)) outline.edge(corners[i], corners[i | bit]);
     return outline.angle();
 }
 
