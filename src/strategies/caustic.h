@@ -14,7 +14,7 @@ class CausticPerturbation final : public Perturbation {
     // turns the direction, were all between x_j and x_1 flat: pixel size at x_1 over the length of the chain.
     CausticPerturbation(ChartEvaluator& charts, std::unique_ptr<const StepSize> size, const RasterStep& raster,
                         double roughness);
-    std::string_view name() const override { return "caustic"; }
+    std::string_view name() const override { return size_->from_geometry() ? "caustic-geo" : "caustic"; }
     double suitability(const PssState& x) const override { return start(x) > 0 ? 1 : 0; }
     bool suitability_varies() const override { return true; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;

@@ -19,6 +19,8 @@ class ConeStepSize final : public StepSize {
         return {alpha_ * r_max, r_max};
     }
 
+    bool from_geometry() const override { return true; }
+
   private:
     // A proposal asks for its two edges more than once, and the next one starts from one of them.
     struct Known {

@@ -15,7 +15,10 @@ class EyePerturbation : public Perturbation {
     enum class Chains { one, many };
     EyePerturbation(ChartEvaluator& charts, Chains chains, std::unique_ptr<const StepSize> size, double roughness,
                     const RasterStep& raster);
-    std::string_view name() const override { return chains_ == Chains::one ? "lens" : "multichain"; }
+    std::string_view name() const override {
+        if (chains_ == Chains::one) return size_->from_geometry() ? "lens-geo" : "lens";
+        return size_->from_geometry() ? "multichain-geo" : "multichain";
+    }
     double suitability(const PssState& x) const override;
     bool suitability_varies() const override { return true; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;

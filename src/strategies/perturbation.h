@@ -20,6 +20,8 @@ class StepSize {
     virtual ~StepSize() = default;
     // Of directions about the edge between two vertices of a path, seen from the first.
     virtual DirectionKernel operator()(const Vertex& from, const Vertex& to) const = 0;
+    // Whether it looks at the scene about the edge: strategies have names of their own then.
+    virtual bool from_geometry() const { return false; }
 };
 
 class FixedStepSize final : public StepSize {

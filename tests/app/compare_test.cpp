@@ -104,7 +104,7 @@ TEST_F(Compare, TakesAReferenceOfAnyOrigin) {
 TEST_F(Compare, RefusesWhatMakesNoSense) {
     expect_refused(quick({}), "nothing to compare");
     expect_refused(quick({"--mixes", "mmlt,"}), "empty name");
-    expect_refused(quick({"--mixes", "mmt"}), "did you mean 'mmlt'");
+    expect_refused(quick({"--mixes", "mmmlt"}), "did you mean 'mmlt'");
     expect_refused(quick({"--mixes", "mmlt,mmlt"}), "two entries");
     expect_refused(quick({"--integrators", "pth"}), "did you mean 'path'");
     expect_refused(quick({"--mixes", "mmlt", "--time", "1s", "--equal", "time"}),

@@ -64,7 +64,7 @@ TEST_F(MixesCommand, SaysWhatIsWrong) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
         {{"mixes", "show"}, "MIX is required"},
         {{"mixes", "sow", "mmlt"}, "unknown command 'sow'; did you mean 'show'? valid names: show, strategies"},
-        {{"mixes", "show", "mmt"}, "unknown mix 'mmt'; did you mean 'mmlt'? valid names: cmlt, cmlt-exchange, "},
+        {{"mixes", "show", "mmmlt"}, "unknown mix 'mmmlt'; did you mean 'mmlt'? valid names: cmlt, cmlt-exchange, "},
         {{"mixes", "show", "bad.toml"}, "bad.toml:3:10: 'weight' cannot be -1; valid: a number from 0"},
         {{"render", "room.xml", "--mix", "bad.toml"}, "bad.toml:3:10: "},
         {{"render", "room.xml", "--mix", "none.toml"}, "none.toml: the mix file cannot be read"},

@@ -185,9 +185,9 @@ TEST(Settings, AreRefusedWithWhatIsValid) {
 }
 
 TEST(Registry, EveryEntryIsDocumentedAndMakesItsStrategy) {
-    const auto scene = own_scene("cornell-box");
+    const auto scene = own_scene("three-planes");  // it has a portal
     const CoordinateLayout layout(*scene, 5);
-    ChartEvaluator evaluator(*scene, layout, {}, {.path = true, .forgets = true});
+    ChartEvaluator evaluator(*scene, layout, {}, {.path = true, .forgets = true, .measure = true});
     const TechniqueDistribution techniques(1, 5);
     const StrategyContext context{evaluator, &evaluator, techniques, {1, 5, false}, {}};
     for (const StrategyInfo& info : strategy_registry()) {
