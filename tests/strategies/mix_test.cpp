@@ -35,8 +35,8 @@ TEST(BuiltinMixes, AreTheFilesOfMixesInCanonicalForm) {
         EXPECT_EQ(write_mix(mix), text.str());
         EXPECT_NE(mix.description, "");
     }
-    EXPECT_THAT(error_of([] { builtin_mix("mmt"); }),
-                HasSubstr("unknown mix 'mmt'; did you mean 'mmlt'? valid names: "));
+    EXPECT_THAT(error_of([] { builtin_mix("mmmlt"); }),
+                HasSubstr("unknown mix 'mmmlt'; did you mean 'mmlt'? valid names: "));
 }
 
 TEST(BuiltinMixes, MmltIsThePublishedMethodWithItsDefaults) {
