@@ -7,7 +7,6 @@
 #include "app/options.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/units.h"
 #include "render/cone_image.h"
 
 namespace keyhole {

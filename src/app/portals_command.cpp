@@ -49,9 +49,8 @@ int run(const PortalsOptions& options) {
         const FoundPortal& p = found.portals[i];
         const Vec3 c = p.face.at({0.5, 0.5});
         fmt::print(
-            "portal-{}  {:.3g} x {:.3g} about ({:.4g}, {:.4g}, {:.4g}), normal ({:.3f}, {:.3f}, {:.3f}): {:.1f}% of "
-            "the "
-            "light, {:.1f}% of its paths\n",
+            "portal-{}  {:.3g} x {:.3g} about ({:.4g}, {:.4g}, {:.4g}), normal ({:.3f}, {:.3f}, {:.3f}): "
+            "{:.1f}% of the light, {:.1f}% of its paths\n",
             i + 1, p.face.e1.norm(), p.face.e2.norm(), c.x(), c.y(), c.z(), p.face.n.x(), p.face.n.y(), p.face.n.z(),
             100 * p.share, 100 * p.paths_share);
     }

@@ -39,6 +39,16 @@ inline EmitterPoint emitter_point(const Vertex& v) {
     return {v.x.p, v.x.ng, v.x.uv, v.pdf_fwd, v.x.offset, v.x.offset_per_length, v.x.primitive};
 }
 
+// A vertex on no surface, for rays to start from.
+inline Vertex free_vertex(const Vec3& p) {
+    Vertex v;
+    v.x.p = p;
+    v.x.ng = Vec3::Zero();
+    v.x.bsdf = nullptr;
+    v.x.emitter = nullptr;
+    return v;
+}
+
 // Whether shading and geometric side of a direction agree. Where they do not, every strategy rejects.
 inline bool same_side(double cos_geometric, double cos_shading) { return cos_geometric * cos_shading > 0; }
 

@@ -10,7 +10,7 @@ CausticPerturbation::CausticPerturbation(ChartEvaluator& charts, std::unique_ptr
     : Perturbation(charts, roughness), size_(std::move(size)), raster_(resolved(raster)) {}
 
 DirectionKernel CausticPerturbation::kernel(const PssState& x, int start) const {
-    const auto v = [&](int i) -> const Vertex& { return x.path.room[static_cast<std::size_t>(i)]; };
+    const auto v = [&](int i) -> const Vertex& { return at(x, i); };
     if (!raster_.used) return (*size_)(v(start), v(start - 1));
     // The view of x_1, which lies on the film, as x has a measure.
     const auto view = scene().sensor().view(sensor_point(v(0)), v(1).x.p);
@@ -28,7 +28,7 @@ int CausticPerturbation::start(const PssState& x) const {
     if (!m || k < 3 || specular(*m, 1)) return 0;
     int j = 2;
     while (j < k && specular(*m, j)) ++j;
-    return j > 2 && !x.path.room[static_cast<std::size_t>(j)].infinite ? j : 0;
+    return j > 2 && !at(x, j).infinite ? j : 0;
 }
 
 Failure CausticPerturbation::retrace(const PssState& x, PssState& y, int start_index, Rng& rng) const {

@@ -22,10 +22,7 @@ EyePerturbation::Structure EyePerturbation::structure(const PssState& x) const {
     }
 }
 
-DirectionKernel EyePerturbation::kernel(const PssState& x, int i) const {
-    const auto v = static_cast<std::size_t>(i);
-    return (*size_)(x.path.room[v], x.path.room[v + 1]);
-}
+DirectionKernel EyePerturbation::kernel(const PssState& x, int i) const { return (*size_)(at(x, i), at(x, i + 1)); }
 
 double EyePerturbation::suitability(const PssState& x) const {
     // All primary rays of an orthographic sensor are parallel.
@@ -59,7 +56,7 @@ Failure EyePerturbation::walk(const PssState& x, PssState& y, int end, Rng& rng)
                                                          : perturb(x, y, i, 1, kernel(x, i), rng);
         if (failure != Failure::none) return failure;
     }
-    if (end < y.path.k && !connectable(y.path.room[static_cast<std::size_t>(end)])) return Failure::zero_bsdf;
+    if (end < y.path.k && !connectable(at(y, end))) return Failure::zero_bsdf;
     return Failure::none;
 }
 

@@ -57,6 +57,12 @@ std::string to_toml(const Parameter& parameter, const Value& value);
 // "a number above 0 to 0.5", "\"kelemen\" or \"gaussian\"".
 std::string valid_values(const Parameter& parameter);
 
+// The value of a number, and whether a choice has the value, among values that hold all parameters.
+inline double number(const Values& values, const char* name) { return std::get<double>(values.at(name)); }
+inline bool is_choice(const Values& values, const char* name, const char* value) {
+    return std::get<std::string>(values.at(name)) == value;
+}
+
 bool has_effect(const Parameter& parameter, const Values& values);
 
 }  // namespace keyhole

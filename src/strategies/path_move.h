@@ -5,6 +5,10 @@
 // All densities are logarithms: no product over a long path leaves the range of double.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "strategies/chart_evaluator.h"
 #include "strategies/mmlt.h"
 
@@ -18,7 +22,14 @@ class PathMove : public PssStrategy {
     const RasterWindow& window() const { return charts_.window(); }
     Tracer& tracer() const { return charts_.tracer(); }
 
-    // The proposal from the ln T of both ways; `y` is complete. Not a number where the way back is impossible.
+    static const Vertex& at(const PssState& x, int i) { return x.path.room[static_cast<std::size_t>(i)]; }
+    // y becomes the vertices of x, of which some are then made anew.
+    static void keep(const PssState& x, PssState& y) {
+        y.path.k = x.path.k;
+        std::copy_n(x.path.room.data(), x.path.k + 1, y.path.room.data());
+    }
+
+    // The proposal from the ln T of both ways; `y` is complete. Fails where the way back is impossible.
     static Proposal proposal(const PssState& x, const PssState& y, double log_forth, double log_back) {
         if (log_back == -std::numeric_limits<double>::infinity()) return Proposal::failed(Failure::outside_support);
         return {std::exp(y.measure.log_f - log_forth - (x.measure.log_f - log_back)), Failure::none};

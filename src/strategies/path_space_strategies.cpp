@@ -11,11 +11,6 @@
 namespace keyhole {
 namespace {
 
-double number(const Values& values, const char* name) { return std::get<double>(values.at(name)); }
-bool is(const Values& values, const char* name, const char* value) {
-    return std::get<std::string>(values.at(name)) == value;
-}
-
 StrategyInfo path_space(const char* name, const char* description) {
     StrategyInfo info;
     info.name = name;
@@ -46,34 +41,39 @@ Parameter roughness() {
         .open();
 }
 
-// Sizes of steps: angles, and pixels where `choice` is "raster".
+// Sizes of steps by angle.
+std::vector<Parameter> angles() {
+    return {Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of a direction").open().in("radians"),
+            Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().in("radians")};
+}
+std::string contradiction_of_angles(const Values& v) {
+    if (number(v, "r-min") < number(v, "r-max")) return {};
+    return fmt::format("r-min = {} is not below r-max = {}", number(v, "r-min"), number(v, "r-max"));
+}
+
+// These, and pixels where `choice` is "raster".
 void add_sizes(StrategyInfo& info, Parameter choice) {
     const std::string name = choice.name;
-    const Parameter r_min =
-        Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of a direction").open().in("radians");
-    const Parameter r_max =
-        Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().in("radians");
     const Parameter pixels_min =
         Parameter::number("pixels-min", 0.1, 0, 1e4, "smallest step in the image").open().in("pixels");
     const Parameter pixels_max =
         Parameter::number("pixels-max", 0, 0, 1e6, "largest step; 0: the radius of a twentieth of the film")
             .in("pixels");
-    info.parameters = {
-        std::move(choice), r_min, r_max, pixels_min.only_with(name, "raster"), pixels_max.only_with(name, "raster"),
-        roughness()};
+    info.parameters = angles();
+    info.parameters.insert(info.parameters.begin(), std::move(choice));
+    for (const Parameter& p : {pixels_min.only_with(name, "raster"), pixels_max.only_with(name, "raster"), roughness()})
+        info.parameters.push_back(p);
     info.contradiction = [](const Values& v) -> std::string {
-        if (number(v, "r-min") >= number(v, "r-max"))
-            return fmt::format("r-min = {} is not below r-max = {}", number(v, "r-min"), number(v, "r-max"));
         if (const double most = number(v, "pixels-max"); most > 0 && number(v, "pixels-min") >= most)
             return fmt::format("pixels-min = {} is not below pixels-max = {}", number(v, "pixels-min"), most);
-        return {};
+        return contradiction_of_angles(v);
     };
 }
 std::unique_ptr<const StepSize> fixed_size(const Values& v) {
     return std::make_unique<FixedStepSize>(number(v, "r-min"), number(v, "r-max"));
 }
 RasterStep raster_step(const Values& v, const char* choice) {
-    return {is(v, choice, "raster"), number(v, "pixels-min"), number(v, "pixels-max")};
+    return {is_choice(v, choice, "raster"), number(v, "pixels-min"), number(v, "pixels-max")};
 }
 
 template <EyePerturbation::Chains chains>
@@ -127,9 +127,9 @@ void add_cones(StrategyInfo& info) {
 }
 std::unique_ptr<const StepSize> cone_size(const StrategyContext& c, const Values& v) {
     ConeSettings settings;
-    settings.estimator = is(v, "estimator", "fast")    ? ConeEstimator::fast
-                         : is(v, "estimator", "exact") ? ConeEstimator::exact
-                                                       : ConeEstimator::bvh_cut;
+    settings.estimator = is_choice(v, "estimator", "fast")    ? ConeEstimator::fast
+                         : is_choice(v, "estimator", "exact") ? ConeEstimator::exact
+                                                              : ConeEstimator::bvh_cut;
     settings.boxes = static_cast<int>(std::get<std::int64_t>(v.at("boxes")));
     settings.t1 = number(v, "t1");
     settings.t2 = number(v, "t2");
@@ -181,30 +181,27 @@ void add_portal_point(StrategyInfo& info) {
 }
 PortalPoint portal_point(const Values& v) {
     using Move = PortalPoint::Move;
-    return {is(v, "point", "fixed")      ? Move::fixed
-            : is(v, "point", "gaussian") ? Move::gaussian
-                                         : Move::uniform,
+    return {is_choice(v, "point", "fixed")      ? Move::fixed
+            : is_choice(v, "point", "gaussian") ? Move::gaussian
+                                                : Move::uniform,
             number(v, "sigma")};
 }
 
 StrategyInfo portal() {
     StrategyInfo info =
         path_space("portal", "Turns an edge that passes a portal about its point there; both of its ends go along");
-    info.parameters = {
-        Parameter::choice("edge", {"nearest", "any"}, "which of the edges that pass a portal, from the sensor"),
-        Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of the direction").open().in("radians"),
-        Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().in("radians")};
+    info.parameters = angles();
+    info.parameters.insert(
+        info.parameters.begin(),
+        Parameter::choice("edge", {"nearest", "any"}, "which of the edges that pass a portal, from the sensor"));
     add_portal_point(info);
-    info.contradiction = [](const Values& v) -> std::string {
-        if (number(v, "r-min") < number(v, "r-max")) return {};
-        return fmt::format("r-min = {} is not below r-max = {}", number(v, "r-min"), number(v, "r-max"));
-    };
+    info.contradiction = contradiction_of_angles;
     info.hindrance = needs_portals;
     info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
         using Edges = PortalCrossings::Edges;
-        return std::make_unique<PortalPerturbation>(*c.charts, is(v, "edge", "any") ? Edges::any : Edges::nearest,
-                                                    portal_point(v),
-                                                    DirectionKernel{number(v, "r-min"), number(v, "r-max")});
+        return std::make_unique<PortalPerturbation>(
+            *c.charts, is_choice(v, "edge", "any") ? Edges::any : Edges::nearest, portal_point(v),
+            DirectionKernel{number(v, "r-min"), number(v, "r-max")});
     };
     return info;
 }

@@ -1,15 +1,11 @@
 #include "strategies/perturbation.h"
 
-#include <algorithm>
-
 #include "pathspace/neighbours.h"
 
 namespace keyhole {
 namespace {
 
 Failure too_short(int step) { return step > 0 ? Failure::eye_subpath_short : Failure::light_subpath_short; }
-
-const Vertex& at(const PssState& x, int i) { return x.path.room[static_cast<std::size_t>(i)]; }
 
 // ln of the density of a direction, as one of the vertex that it leads to.
 double log_density(const DirectionKernel& kernel, double angle, const Vertex& from, const Vertex& to, const Vec3& d) {
@@ -60,11 +56,6 @@ void Perturbation::add_followed(const PssState& x, const PssState& y, int i, int
     const auto next = static_cast<std::size_t>(i + step);
     densities.forth += std::log(step > 0 ? y.measure.eye[next] : y.measure.light[next]);
     densities.back += std::log(step > 0 ? x.measure.eye[next] : x.measure.light[next]);
-}
-
-void Perturbation::keep(const PssState& x, PssState& y) {
-    y.path.k = x.path.k;
-    std::copy_n(x.path.room.data(), x.path.k + 1, y.path.room.data());
 }
 
 }  // namespace keyhole

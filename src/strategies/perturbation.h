@@ -68,9 +68,6 @@ class Perturbation : public PathMove {
                               const DirectionKernel& at_y, Densities& densities);
     static void add_followed(const PssState& x, const PssState& y, int i, int step, Densities& densities);
 
-    // y becomes the vertices of x, of which some are then made anew.
-    static void keep(const PssState& x, PssState& y);
-
     // What became of the ray from y_i, which only the emitter may be reached by without a surface.
     static Failure arrived(const PssState& y, int i, int step, Extension extension);
 

@@ -5,21 +5,6 @@
 #include "pathspace/neighbours.h"
 
 namespace keyhole {
-namespace {
-
-const Vertex& at(const PssState& x, int i) { return x.path.room[static_cast<std::size_t>(i)]; }
-
-// A vertex on no surface, for rays to start from.
-Vertex free_vertex(const Vec3& p) {
-    Vertex v;
-    v.x.p = p;
-    v.x.ng = Vec3::Zero();
-    v.x.bsdf = nullptr;
-    v.x.emitter = nullptr;
-    return v;
-}
-
-}  // namespace
 
 std::optional<Portals::Point> PortalPoint::operator()(const Portals& portals, const Portals::Point& c, Rng& rng) const {
     const PortalFace& face = portals.faces()[c.face];
@@ -104,8 +89,8 @@ double PortalPerturbation::log_jacobian(const PssState& x, int edge, std::uint32
 }
 
 Failure PortalPerturbation::pivot(const PssState& x, PssState& y, int edge, const Portals::Point& c, Rng& rng) const {
-    const int k = y.path.k = x.path.k;
-    std::copy_n(x.path.room.data(), k + 1, y.path.room.data());
+    keep(x, y);
+    const int k = y.path.k;
     const double first = rng.uniform();
     const Vec3 d = kernel_.sample(direction(at(x, edge), at(x, edge + 1)), {first, rng.uniform()});
     Vertex* const v = y.path.room.data() + edge;

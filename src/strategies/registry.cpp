@@ -10,8 +10,6 @@
 namespace keyhole {
 namespace {
 
-double number(const Values& values, const char* name) { return std::get<double>(values.at(name)); }
-
 std::string applies_always(const Scene&, const PathLengths&) { return ""; }
 
 StrategyInfo large_step() {
@@ -51,7 +49,7 @@ StrategyInfo with_kernel() {
 // make(kernel) gives the strategy.
 template <class Make>
 std::unique_ptr<PssStrategy> make_with_kernel(const Values& v, const Make& make) {
-    if (std::get<std::string>(v.at("kernel")) == "gaussian") return make(GaussianKernel(number(v, "sigma")));
+    if (is_choice(v, "kernel", "gaussian")) return make(GaussianKernel(number(v, "sigma")));
     return make(KelemenKernel(number(v, "s1"), number(v, "s2")));
 }
 

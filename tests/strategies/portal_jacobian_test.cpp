@@ -10,15 +10,6 @@
 namespace keyhole {
 namespace {
 
-Vertex free_vertex(const Vec3& p) {
-    Vertex v;
-    v.x.p = p;
-    v.x.ng = Vec3::Zero();
-    v.x.bsdf = nullptr;
-    v.x.emitter = nullptr;
-    return v;
-}
-
 // The point on the portal and the direction there move both ends of the edge; in area measures and solid angle the
 // determinant is that of PortalPerturbation::log_jacobian, |dA_c dsigma / (dA_p dA_{p+1})|; of environment light, with
 // its direction in place of the second area.
