@@ -41,6 +41,8 @@ Parameter roughness() {
         .open();
 }
 
+Parameter primary_ray() { return Parameter::choice("primary", {"raster", "angle"}, "how the primary ray moves"); }
+
 // Sizes of steps by angle.
 std::vector<Parameter> angles() {
     return {Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of a direction").open().in("radians"),
@@ -69,42 +71,13 @@ void add_sizes(StrategyInfo& info, Parameter choice) {
         return contradiction_of_angles(v);
     };
 }
-std::unique_ptr<const StepSize> fixed_size(const Values& v) {
+std::unique_ptr<const StepSize> fixed_size(const StrategyContext&, const Values& v) {
     return std::make_unique<FixedStepSize>(number(v, "r-min"), number(v, "r-max"));
 }
+// Of strategies without that choice: none.
 RasterStep raster_step(const Values& v, const char* choice) {
+    if (!v.contains(choice)) return {};
     return {is_choice(v, choice, "raster"), number(v, "pixels-min"), number(v, "pixels-max")};
-}
-
-template <EyePerturbation::Chains chains>
-StrategyInfo eye_perturbation(const char* name, const char* description) {
-    StrategyInfo info = path_space(name, description);
-    add_sizes(info, Parameter::choice("primary", {"raster", "angle"}, "how the primary ray moves"));
-    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<EyePerturbation>(*c.charts, chains, fixed_size(v), number(v, "roughness"),
-                                                 raster_step(v, "primary"));
-    };
-    return info;
-}
-
-StrategyInfo multichain() {
-    StrategyInfo info = eye_perturbation<EyePerturbation::Chains::many>(
-        "multichain", "As lens, for paths that leave a rough vertex into another chain of specular ones");
-    info.hindrance = needs_three_edges;
-    return info;
-}
-
-StrategyInfo caustic() {
-    StrategyInfo info = path_space("caustic",
-                                   "Perturbs the direction of light into a chain of specular vertices that ends where "
-                                   "the sensor looks, and follows the chain");
-    add_sizes(info, Parameter::choice("size", {"raster", "angle"}, "what the size of steps is given by"));
-    info.hindrance = needs_three_edges;
-    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<CausticPerturbation>(*c.charts, fixed_size(v), raster_step(v, "size"),
-                                                     number(v, "roughness"));
-    };
-    return info;
 }
 
 // Geometry-aware versions: sizes from cones.
@@ -138,31 +111,37 @@ std::unique_ptr<const StepSize> cone_size(const StrategyContext& c, const Values
     return std::make_unique<ConeStepSize>(c.charts->tracer().scene(), settings, number(v, "alpha"));
 }
 
-template <EyePerturbation::Chains chains>
-StrategyInfo eye_perturbation_geo(const char* name, const char* description) {
+// What makes a strategy's sizes; add_sizes or add_cones have their parameters.
+using MakeSize = std::unique_ptr<const StepSize>(const StrategyContext&, const Values&);
+
+template <EyePerturbation::Chains chains, MakeSize make_size>
+StrategyInfo eye_perturbation(const char* name, const char* description) {
     StrategyInfo info = path_space(name, description);
-    add_cones(info);
+    if (chains == EyePerturbation::Chains::many) info.hindrance = needs_three_edges;
     info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<EyePerturbation>(*c.charts, chains, cone_size(c, v), number(v, "roughness"),
-                                                 RasterStep{});
+        return std::make_unique<EyePerturbation>(*c.charts, chains, make_size(c, v), number(v, "roughness"),
+                                                 raster_step(v, "primary"));
     };
     return info;
 }
 
-StrategyInfo multichain_geo() {
-    StrategyInfo info = eye_perturbation_geo<EyePerturbation::Chains::many>(
-        "multichain-geo", "As multichain, with steps as large as the empty cones about the edges");
+template <MakeSize make_size>
+StrategyInfo caustic_perturbation(const char* name, const char* description) {
+    StrategyInfo info = path_space(name, description);
     info.hindrance = needs_three_edges;
+    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
+        return std::make_unique<CausticPerturbation>(*c.charts, make_size(c, v), raster_step(v, "size"),
+                                                     number(v, "roughness"));
+    };
     return info;
 }
 
-StrategyInfo caustic_geo() {
-    StrategyInfo info = path_space("caustic-geo", "As caustic, with steps as large as the empty cone about the edge");
+StrategyInfo with_sizes(StrategyInfo info, const Parameter& choice) {
+    add_sizes(info, choice);
+    return info;
+}
+StrategyInfo with_cones(StrategyInfo info) {
     add_cones(info);
-    info.hindrance = needs_three_edges;
-    info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<CausticPerturbation>(*c.charts, cone_size(c, v), RasterStep{}, number(v, "roughness"));
-    };
     return info;
 }
 
@@ -210,12 +189,12 @@ StrategyInfo portal_lens() {
     StrategyInfo info = path_space("portal-lens",
                                    "As lens, for paths that pass a portal right after: the edge turns about its point "
                                    "there, and its far end goes along");
-    add_sizes(info, Parameter::choice("primary", {"raster", "angle"}, "how the primary ray moves"));
+    add_sizes(info, primary_ray());
     add_portal_point(info);
     info.hindrance = needs_portals;
     info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<PortalLens>(*c.charts, fixed_size(v), number(v, "roughness"), raster_step(v, "primary"),
-                                            portal_point(v));
+        return std::make_unique<PortalLens>(*c.charts, fixed_size(c, v), number(v, "roughness"),
+                                            raster_step(v, "primary"), portal_point(v));
     };
     return info;
 }
@@ -223,17 +202,30 @@ StrategyInfo portal_lens() {
 }  // namespace
 
 std::vector<StrategyInfo> path_space_strategies() {
-    return {bidirectional(),
-            eye_perturbation<EyePerturbation::Chains::one>(
-                "lens", "Perturbs the primary ray, follows specular vertices, and connects the first rough one"),
-            multichain(),
-            caustic(),
-            eye_perturbation_geo<EyePerturbation::Chains::one>(
-                "lens-geo", "As lens, with steps as large as the empty cone about the primary edge"),
-            multichain_geo(),
-            caustic_geo(),
-            portal(),
-            portal_lens()};
+    constexpr auto one = EyePerturbation::Chains::one, many = EyePerturbation::Chains::many;
+    const Parameter size = Parameter::choice("size", {"raster", "angle"}, "what the size of steps is given by");
+    return {
+        bidirectional(),
+        with_sizes(eye_perturbation<one, fixed_size>(
+                       "lens", "Perturbs the primary ray, follows specular vertices, and connects the first rough one"),
+                   primary_ray()),
+        with_sizes(
+            eye_perturbation<many, fixed_size>(
+                "multichain", "As lens, for paths that leave a rough vertex into another chain of specular ones"),
+            primary_ray()),
+        with_sizes(caustic_perturbation<fixed_size>(
+                       "caustic",
+                       "Perturbs the direction of light into a chain of specular vertices that ends where the "
+                       "sensor looks, and follows the chain"),
+                   size),
+        with_cones(eye_perturbation<one, cone_size>(
+            "lens-geo", "As lens, with steps as large as the empty cone about the primary edge")),
+        with_cones(eye_perturbation<many, cone_size>(
+            "multichain-geo", "As multichain, with steps as large as the empty cones about the edges")),
+        with_cones(caustic_perturbation<cone_size>("caustic-geo",
+                                                   "As caustic, with steps as large as the empty cone about the edge")),
+        portal(),
+        portal_lens()};
 }
 
 }  // namespace keyhole
