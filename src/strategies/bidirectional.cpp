@@ -62,7 +62,7 @@ double Bidirectional::log_deletion(const Split& s) const {
 
 double Bidirectional::addition_weight(const Split& s, int added) const {
     const int length = s.eye + added + s.light - 1, change = std::abs(added - s.between);
-    if (limits_.fixed ? change != 0 : length < limits_.min || length > limits_.max) return 0;
+    if (lengths_.fixed ? change != 0 : length < lengths_.min || length > lengths_.max) return 0;
     // The emitter's end is not left without a vertex of its own, as x_k cannot be kept at the eye's.
     if (length < 1 || (added == 0 && (s.between == 0 || s.light == 0))) return 0;
     if (EyeShares(s.eye, s.light, added).count() == 0) return 0;
@@ -71,7 +71,7 @@ double Bidirectional::addition_weight(const Split& s, int added) const {
 
 double Bidirectional::total_addition_weight(const Split& s) const {
     double sum = 0;
-    for (int a = 0; s.eye + a + s.light - 1 <= limits_.max; ++a) sum += addition_weight(s, a);
+    for (int a = 0; s.eye + a + s.light - 1 <= lengths_.max; ++a) sum += addition_weight(s, a);
     return sum;
 }
 
@@ -79,7 +79,7 @@ int Bidirectional::choose_addition(const Split& s, Rng& rng) const {
     const double total = total_addition_weight(s);
     if (!(total > 0)) return -1;
     return draw_index(
-        limits_.max + 2 - s.eye - s.light, total, [&](int a) { return addition_weight(s, a); }, rng);
+        lengths_.max + 2 - s.eye - s.light, total, [&](int a) { return addition_weight(s, a); }, rng);
 }
 
 double Bidirectional::log_density(const Split& from, const Split& to, const PssState& made) const {

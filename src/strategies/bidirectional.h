@@ -2,15 +2,10 @@
 // ends.
 #pragma once
 
+#include "strategies/path_lengths.h"
 #include "strategies/path_move.h"
 
 namespace keyhole {
-
-// Lengths that a mutation may give a path.
-struct LengthLimits {
-    int min = 1, max = 1;
-    bool fixed = false;  // the path keeps the one that it has
-};
 
 // The kept ends are x_0 .. x_l and x_m .. x_k; l = -1 and m = k + 1 where an end is deleted as a whole. The d = m - l -
 // 1 vertices between give way to a others, j of them from the eye's side:
@@ -19,7 +14,8 @@ struct LengthLimits {
 // side.
 class Bidirectional final : public PathMove {
   public:
-    Bidirectional(ChartEvaluator& charts, const LengthLimits& limits) : PathMove(charts), limits_(limits) {}
+    // `lengths` are resolved.
+    Bidirectional(ChartEvaluator& charts, const PathLengths& lengths) : PathMove(charts), lengths_(lengths) {}
     std::string_view name() const override { return "bidirectional"; }
     Proposal propose(PssState& x, PssState& y, Rng& rng) const override;
 
@@ -40,7 +36,7 @@ class Bidirectional final : public PathMove {
     double log_density(const Split& from, const Split& to, const PssState& made) const;
     Failure grow(const PssState& x, PssState& y, const Split& to, int from_eye, Rng& rng) const;
 
-    LengthLimits limits_;
+    PathLengths lengths_;
 };
 
 }  // namespace keyhole

@@ -30,7 +30,7 @@ StrategyInfo bidirectional() {
         path_space("bidirectional", "Deletes a part of the path and grows another from both ends, of another length");
     info.ergodic = true;
     info.make = [](const StrategyContext& c, const Values&) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<Bidirectional>(*c.charts, LengthLimits{c.lengths.min, c.lengths.max, c.lengths.fixed});
+        return std::make_unique<Bidirectional>(*c.charts, c.lengths);
     };
     return info;
 }

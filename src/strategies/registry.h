@@ -9,18 +9,9 @@
 #include "chain/rectification.h"
 #include "strategies/inverse_small_step.h"
 #include "strategies/parameter.h"
+#include "strategies/path_lengths.h"
 
 namespace keyhole {
-
-// Which paths a chain moves among.
-struct PathLengths {
-    static constexpr int longest = 256;
-
-    int min = 1, max = 0;  // edges; max 0: what the scene file says, else 12
-    bool fixed = false;    // each chain keeps the length that it started with
-
-    bool operator==(const PathLengths&) const = default;
-};
 
 // What a strategy is made from, for one thread. Must outlive it.
 struct StrategyContext {

@@ -60,7 +60,7 @@ const std::vector<MoveCase>& moves() {
     static const std::vector<MoveCase> list = {
         {"bidirectional",
          [](ChartEvaluator& c) -> std::unique_ptr<PssStrategy> {
-             return std::make_unique<Bidirectional>(c, LengthLimits{1, max_length});
+             return std::make_unique<Bidirectional>(c, PathLengths{1, max_length});
          }},
         {"lens_raster", [](ChartEvaluator& c) { return eye<one>(c, fixed_size(), true); }},
         {"lens_angle", [](ChartEvaluator& c) { return eye<one>(c, fixed_size()); }},
