@@ -36,6 +36,26 @@ inline Double4 high_half(Float8 v) {
     return __builtin_convertvector(__builtin_shufflevector(v, v, 4, 5, 6, 7), Double4);
 }
 
+inline Float8 broadcast(float x) { return Float8{} + x; }
+inline Float8 least(Float8 a, Float8 b) { return a < b ? a : b; }
+inline Float8 greatest(Float8 a, Float8 b) { return a > b ? a : b; }
+inline Float8 magnitude(Float8 v) { return v < 0 ? -v : v; }
+inline Float8 square_root(Float8 v) {
+    for (int i = 0; i < lanes; ++i) v[i] = __builtin_sqrtf(v[i]);
+    return v;
+}
+
+// Bit i: what comparison i gave.
+inline unsigned mask(Int32x8 comparison) {
+#ifdef __AVX__
+    return static_cast<unsigned>(__builtin_ia32_movmskps256(std::bit_cast<Float8>(comparison)));
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < lanes; ++i) bits |= static_cast<unsigned>(comparison[i] & 1) << i;
+    return bits;
+#endif
+}
+
 // The smallest multiple of `lanes` that is not below n.
 constexpr int whole_lanes(int n) { return (n + lanes - 1) / lanes * lanes; }
 

@@ -10,13 +10,13 @@ namespace keyhole {
 
 enum class ConeEstimator {
     fast,     // corners of the boxes beside the edge
-    bvh_cut,  // these boxes as a whole, the narrowest opened again and again
+    bvh_cut,  // bounds for these boxes as a whole, the narrowest opened as long as there are few
     exact     // down to triangles
 };
 
 struct ConeSettings {
     ConeEstimator estimator = ConeEstimator::bvh_cut;
-    int boxes = 10;                        // N_max of bvh-cut: as many boxes are opened at most
+    int boxes = 10;                        // N_max of bvh-cut: from as many on, none is opened
     double t1 = 1e-4, t2 = 0.99;           // part of the edge's length that the cone covers
     double tau_min = 0.01, tau_max = 0.5;  // radians, bounds of the result
 };
@@ -43,29 +43,28 @@ class ConeFinder {
     const ConeSettings& settings() const { return settings_; }
 
   private:
-    // A part of the scene, under the angle given or a larger one; `known`: exactly that one.
+    // What the box of a lane holds, seen under an angle of the given tangent or a larger one; `exact`: that one.
     struct Entry {
-        double angle;
+        double tangent;
         const BoxHierarchy::Node* node;
-        bool known;
+        int lane;
+        bool exact;
     };
     struct Query;
     template <class Visit>
-    void initial_cut(const Query& query, const Visit& visit);
+    void visit_met(const Query& query, const Visit& visit);
     double fast(const Query& query);
     Entry refined(const Query& query, std::size_t boxes);
-    void push(const Entry& entry);
-    Entry pop();
 
     const BoxHierarchy* boxes_;
     ConeSettings settings_;
+    double tan_tau_;  // of tau_max
     std::vector<const BoxHierarchy::Node*> stack_;
     std::vector<Entry> queue_;
 };
 
-// The smallest angle from the axis under which the apex sees what lies of a triangle, or of a box, between the cone's
-// two planes; infinite if nothing does. Parts that the axis itself meets do not count as angle zero.
+// The smallest angle from the axis under which the apex sees what lies of a triangle between the cone's two planes;
+// infinite if nothing does. Parts that the axis itself meets do not count as angle zero.
 double least_angle(const ConeEdge& edge, const ConeSettings& settings, const BoxHierarchy::Triangle& triangle);
-double least_angle(const ConeEdge& edge, const ConeSettings& settings, const Vec3& lower, const Vec3& upper);
 
 }  // namespace keyhole

@@ -42,8 +42,9 @@ void for_each_triangle(const Shape& shape, const Visit& visit) {
 
 // As the builder makes it; memory of the builder's.
 struct BuiltNode {
-    RTCBounds bounds[2];
-    BuiltNode* children[2] = {nullptr, nullptr};
+    RTCBounds bounds[lanes];
+    BuiltNode* children[lanes];
+    unsigned count = 0;  // 0: a leaf
     std::uint32_t triangle = 0;
 };
 
@@ -51,8 +52,9 @@ void* create_node(RTCThreadLocalAllocator allocator, unsigned, void*) {
     return new (rtcThreadLocalAlloc(allocator, sizeof(BuiltNode), 16)) BuiltNode;
 }
 void set_children(void* node, void** children, unsigned count, void*) {
-    for (unsigned i = 0; i < count; ++i)
-        static_cast<BuiltNode*>(node)->children[i] = static_cast<BuiltNode*>(children[i]);
+    auto* built = static_cast<BuiltNode*>(node);
+    built->count = count;
+    for (unsigned i = 0; i < count; ++i) built->children[i] = static_cast<BuiltNode*>(children[i]);
 }
 void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
     for (unsigned i = 0; i < count; ++i) static_cast<BuiltNode*>(node)->bounds[i] = *bounds[i];
@@ -93,7 +95,7 @@ void BoxHierarchy::build() {
     if (!device) throw std::runtime_error("Embree cannot create a device on this machine");
     const std::unique_ptr<RTCBVHTy, void (*)(RTCBVH)> bvh(rtcNewBVH(device.get()), rtcReleaseBVH);
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
-    arguments.maxBranchingFactor = 2;
+    arguments.maxBranchingFactor = lanes;
     arguments.maxDepth = 64;
     arguments.minLeafSize = arguments.maxLeafSize = 1;
     arguments.bvh = bvh.get();
@@ -103,35 +105,41 @@ void BoxHierarchy::build() {
     arguments.setNodeChildren = set_children;
     arguments.setNodeBounds = set_bounds;
     arguments.createLeaf = create_leaf;
-    const auto* top = static_cast<const BuiltNode*>(isolated([&] { return rtcBuildBVH(&arguments); }));
+    auto* top = static_cast<BuiltNode*>(isolated([&] { return rtcBuildBVH(&arguments); }));
     if (!top) throw std::runtime_error("Embree cannot build a hierarchy of boxes");
 
-    // Copied level by level, children beside each other.
-    RTCBounds whole{};
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-        const RTCBuildPrimitive& p = primitives[i];
-        const bool first = i == 0;
-        whole.lower_x = first ? p.lower_x : std::min(whole.lower_x, p.lower_x);
-        whole.lower_y = first ? p.lower_y : std::min(whole.lower_y, p.lower_y);
-        whole.lower_z = first ? p.lower_z : std::min(whole.lower_z, p.lower_z);
-        whole.upper_x = first ? p.upper_x : std::max(whole.upper_x, p.upper_x);
-        whole.upper_y = first ? p.upper_y : std::max(whole.upper_y, p.upper_y);
-        whole.upper_z = first ? p.upper_z : std::max(whole.upper_z, p.upper_z);
-    }
-    std::vector<const BuiltNode*> sources;
-    const auto append = [&](const BuiltNode* source, const RTCBounds& b) {
-        nodes_.push_back({{b.lower_x, b.lower_y, b.lower_z},
-                          {b.upper_x, b.upper_y, b.upper_z},
-                          source->triangle,
-                          source->children[0] == nullptr});
-        sources.push_back(source);
-    };
-    append(top, whole);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        if (nodes_[i].leaf) continue;
-        const BuiltNode* source = sources[i];
-        nodes_[i].first = static_cast<std::uint32_t>(nodes_.size());
-        for (int c = 0; c < 2; ++c) append(source->children[c], source->bounds[c]);
+    // Copied level by level. A leaf at the top is the only box of a node.
+    BuiltNode above_top;
+    above_top.count = 1;
+    above_top.children[0] = top;
+    const RTCBuildPrimitive& only = primitives[0];
+    above_top.bounds[0] = {only.lower_x, only.lower_y, only.lower_z, 0, only.upper_x, only.upper_y, only.upper_z, 0};
+    std::vector<const BuiltNode*> sources = {top->count == 0 ? &above_top : top};
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const BuiltNode& source = *sources[i];
+        Node node;
+        node.lower.fill(broadcast(infinity));
+        node.upper.fill(broadcast(-infinity));
+        for (unsigned lane = 0; lane < source.count; ++lane) {
+            const RTCBounds& b = source.bounds[lane];
+            const BuiltNode* child = source.children[lane];
+            const float lower[] = {b.lower_x, b.lower_y, b.lower_z}, upper[] = {b.upper_x, b.upper_y, b.upper_z};
+            for (std::size_t c = 0; c < 3; ++c) {
+                node.lower[c][lane] = lower[c];
+                node.upper[c][lane] = upper[c];
+            }
+            const auto bit = static_cast<std::uint8_t>(1u << lane);
+            node.boxes |= bit;
+            if (child->count == 0) {
+                node.leaves |= bit;
+                node.content[lane] = child->triangle;
+            } else {
+                node.content[lane] = static_cast<std::uint32_t>(sources.size());
+                sources.push_back(child);
+            }
+        }
+        nodes_.push_back(node);
     }
 }
 

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "base/lanes.h"
 #include "base/phase.h"
 #include "scene/instance.h"
 #include "scene/shape.h"
@@ -163,8 +164,6 @@ class EmbreeScene {
 
   private:
     static void store_floats(const Vec3& v, double w, float* out) {
-        using Double4 = double __attribute__((vector_size(32)));
-        using Float4 = float __attribute__((vector_size(16)));
         const Float4 floats = __builtin_convertvector((Double4{v.x(), v.y(), v.z(), w}), Float4);
         std::memcpy(out, &floats, sizeof(floats));
     }

@@ -63,25 +63,6 @@ TEST(Cone, LeastAngleOfATriangleIsThatOfItsPoints) {
     EXPECT_GT(seen, 50);
 }
 
-TEST(Cone, OfABoxIsNeverAboveWhatItHolds) {
-    Rng rng(1, 2);
-    const ConeSettings settings;
-    for (int i = 0; i < 20000; ++i) {
-        const Vec3 centre = random_point(rng);
-        const Triangle t = {centre + 0.3 * random_point(rng), centre + 0.3 * random_point(rng),
-                            centre + 0.3 * random_point(rng)};
-        const Vec3 lower = t[0].cwiseMin(t[1]).cwiseMin(t[2]), upper = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
-        const ConeEdge edge = edge_between(random_point(rng), random_point(rng), random_direction(rng));
-        // Boxes that the axis meets are opened, never asked.
-        Eigen::AlignedBox3d box(lower, upper);
-        bool met = false;
-        for (int j = 0; j <= 200; ++j)
-            met = met || box.exteriorDistance(Vec3(edge.apex + edge.axis * edge.length * (j / 200.0))) < 0.02;
-        if (met) continue;
-        ASSERT_LE(least_angle(edge, settings, lower, upper), least_angle(edge, settings, t) + 1e-9);
-    }
-}
-
 struct Angles {
     double fast, cut, exact, brute;
 };
@@ -146,6 +127,12 @@ TEST(Cone, OfAnEmptySceneAndOfGrazingEdges) {
     }
 }
 
+template <class Body>
+void for_each_box(const BoxHierarchy::Node& node, const Body& body) {
+    for (int lane = 0; lane < lanes; ++lane)
+        if (node.boxes >> lane & 1) body(lane);
+}
+
 // Every instance and every shape that has no triangles of its own counts.
 TEST(BoxHierarchy, HoldsEverythingThatRaysSee) {
     Rng rng(1, 4);
@@ -153,7 +140,8 @@ TEST(BoxHierarchy, HoldsEverythingThatRaysSee) {
         const auto scene = own_scene(name);
         const BoxHierarchy& boxes = scene->boxes();
         ASSERT_GE(boxes.triangles().size(), scene->statistics().triangles);
-        Eigen::AlignedBox3d whole(boxes.root().lower.cast<double>(), boxes.root().upper.cast<double>());
+        Eigen::AlignedBox3d whole;
+        for_each_box(boxes.root(), [&](int lane) { whole.extend(boxes.root().box(lane)); });
         for (int i = 0; i < 2000; ++i) {
             SurfacePoint x;
             const Vec3 o = scene->center() + 0.3 * scene->radius() * random_point(rng), d = random_direction(rng);
@@ -166,19 +154,17 @@ TEST(BoxHierarchy, HoldsEverythingThatRaysSee) {
         while (!stack.empty()) {
             const BoxHierarchy::Node& node = *stack.back();
             stack.pop_back();
-            const Eigen::AlignedBox3f box(node.lower, node.upper);
-            if (node.leaf) {
-                ++leaves;
-                for (const Vec3& p : boxes.triangle(node))
-                    ASSERT_TRUE((node.lower.cast<double>().array() <= p.array()).all() &&
-                                (p.array() <= node.upper.cast<double>().array()).all());
-                continue;
-            }
-            for (int i = 0; i < 2; ++i) {
-                const BoxHierarchy::Node& child = boxes.child(node, i);
-                ASSERT_TRUE(box.contains(child.lower) && box.contains(child.upper));
+            for_each_box(node, [&](int lane) {
+                const Eigen::AlignedBox3d box = node.box(lane);
+                if (node.leaf(lane)) {
+                    ++leaves;
+                    for (const Vec3& p : boxes.triangle(node, lane)) ASSERT_TRUE(box.contains(p));
+                    return;
+                }
+                const BoxHierarchy::Node& child = boxes.child(node, lane);
+                for_each_box(child, [&](int i) { ASSERT_TRUE(box.contains(child.box(i))); });
                 stack.push_back(&child);
-            }
+            });
         }
         EXPECT_EQ(leaves, boxes.triangles().size());
     }
