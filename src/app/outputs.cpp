@@ -51,6 +51,7 @@ Outputs::Outputs(std::vector<std::string> names, const std::string& scene_filena
     : images_(std::move(names)), error_image_(error_image), exposure_(exposure) {
     if (images_.empty()) images_.push_back(scene_name(scene_filename) + ".exr");
     report_ = fs::path(images_.front()).replace_extension(".json").string();
+    mix_ = fs::path(images_.front()).replace_extension(".toml").string();
     for (const std::string& name : images_) image_format(name);
     for (const std::string& name : images_) check_writable(name);
     check_writable(report_);
@@ -89,6 +90,9 @@ std::vector<std::string> Outputs::write(const Image& image, const Image& error, 
         keep(write_or_rescue(error_image_, [&](const std::string& file) { write_image(file, error, of_error); }));
     }
     keep(write_or_rescue(report_, [&](const std::string& file) { write_file(file, json_text(run, 2) + "\n"); }));
+    if (run.at("statistics").contains("tuning"))
+        keep(write_or_rescue(
+            mix_, [&](const std::string& file) { write_file(file, run.at("settings").at("mix").get<std::string>()); }));
     return failures;
 }
 

@@ -24,7 +24,10 @@ class Outputs {
     // Writes the images only: something to look at while the run goes on.
     void write_preview(const Image& image, const Json& run) const;
 
-    // Writes images, their standard errors if they are asked for, and report. A file that cannot be written is written
+    // Where a mix that was tuned is written to, for renders to come.
+    const std::string& mix() const { return mix_; }
+
+    // Writes images, their standard errors if they are asked for, report, and the mix if it was tuned. A file that cannot be written is written
     // to the system's temporary folder instead. Returns what went wrong, one message per file.
     std::vector<std::string> write(const Image& image, const Image& error, const Json& run) const;
 
@@ -32,7 +35,7 @@ class Outputs {
     WriteOptions write_options(const Json& run) const;
 
     std::vector<std::string> images_;
-    std::string report_, error_image_;
+    std::string report_, mix_, error_image_;
     double exposure_;
 };
 

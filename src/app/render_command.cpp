@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -45,6 +46,22 @@ void print_strategies(const RenderStatistics& statistics) {
     }
 }
 
+// What the race was about and how much better the winner was.
+void print_tuning(const TuningStatistics& t, bool verbose) {
+    const auto mmlt =
+        std::find_if(t.contenders.begin(), t.contenders.end(), [](const auto& c) { return c.name == "mmlt"; });
+    const std::string gain = mmlt == t.contenders.end() || t.winner == "mmlt"
+                                 ? ""
+                                 : fmt::format("; {:.2g} times as efficient as mmlt in the race",
+                                               t.contenders.front().efficiency() / mmlt->efficiency());
+    fmt::print("mix: {}, of {} that raced for {} (CPU){}\n", t.winner, t.contenders.size(),
+               format_duration(t.cpu_seconds), gain);
+    if (!verbose) return;
+    for (const auto& c : t.contenders)
+        fmt::print("  {:<48} {:>8} mutations in {}, error {:.3g}, efficiency {:.3g}\n", c.name,
+                   format_count(c.mutations), format_duration(c.cpu_seconds), c.error, c.efficiency());
+}
+
 // What the disagreement of replicates says.
 void print_errors(const ErrorStatistics& e, bool verbose) {
     if (e.replicates == 0) return;
@@ -67,6 +84,7 @@ void print_summary(const RenderOptions& options, const Json& report, const Rende
     fmt::print("{} in {}: {:.6g} {} per pixel, {} {}/s{}\n", s.interrupted ? "interrupted" : "rendered",
                format_duration(s.seconds_bootstrap + s.seconds_render), numbers.at("mutations_per_pixel").get<double>(),
                unit, format_count(numbers.at("mutations_per_second").get<double>()), unit, acceptance);
+    if (s.tuning) print_tuning(*s.tuning, options.verbose);
     const bool luminance =
         options.settings.integrator != Integrator::mmlt || options.settings.mix.target == TargetFunction::luminance;
     fmt::print("mean {} {:.6g}{}\n", luminance ? "luminance" : "of the paths' largest channel", s.b,
@@ -79,10 +97,11 @@ void print_summary(const RenderOptions& options, const Json& report, const Rende
     print_strategies(s);
 }
 
-void print_files(const Outputs& outputs) {
+void print_files(const Outputs& outputs, bool tuned) {
     for (const std::string& name : outputs.images()) fmt::print("wrote {}\n", name);
     if (!outputs.error_image().empty()) fmt::print("wrote {}\n", outputs.error_image());
     fmt::print("wrote {}\n", outputs.report());
+    if (tuned) fmt::print("wrote {}\n", outputs.mix());
 }
 
 RenderCallbacks make_callbacks(const Outputs& outputs, const Json& run, const InterruptGuard& interrupt,
@@ -146,7 +165,7 @@ int run_render(const RenderOptions& options) {
     for (const std::string& failure : failures) print_error(failure);
     if (!options.quiet) print_summary(options, report, statistics);
     if (!failures.empty()) return exit_failure;
-    if (!options.quiet) print_files(outputs);
+    if (!options.quiet) print_files(outputs, statistics.tuning.has_value());
     return interrupt.signal() != 0 ? exit_signal + interrupt.signal() : exit_success;
 }
 

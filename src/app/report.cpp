@@ -100,6 +100,20 @@ Json film_json(const FilmSettings& film) {
             {"filter_radius", film.filter.radius}};
 }
 
+Json tuning_json(const TuningStatistics& t) {
+    Json json = {{"winner", t.winner},
+                 {"mutations", t.mutations},
+                 {"cpu_seconds", t.cpu_seconds},
+                 {"contenders", Json::array()}};
+    for (const auto& c : t.contenders)
+        json["contenders"].push_back({{"name", c.name},
+                                      {"mutations", c.mutations},
+                                      {"cpu_seconds", c.cpu_seconds},
+                                      {"error", c.error},
+                                      {"efficiency", c.efficiency()}});
+    return json;
+}
+
 Integrator integrator_of(const std::string& name) {
     for (const Integrator integrator : {Integrator::path, Integrator::bdpt, Integrator::mmlt})
         if (name == integrator_name(integrator)) return integrator;
@@ -151,6 +165,10 @@ void add_statistics(Json& report, const RenderSettings& settings, const Scene& s
     if (s.errors.replicates > 0) json["errors"] = errors_json(s.errors);
     if (!s.lengths.empty()) json["lengths"] = Json::array();
     for (const LengthStatistics& length : s.lengths) json["lengths"].push_back(length_json(length));
+    if (s.tuning) {
+        json["tuning"] = tuning_json(*s.tuning);
+        report["settings"]["mix"] = write_mix(s.mix);
+    }
     report["finished"] = utc_now();
     report["statistics"] = std::move(json);
 }

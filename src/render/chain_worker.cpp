@@ -51,12 +51,12 @@ std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scen
 }
 
 ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                         const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films)
+                         const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films, bool with_films)
     : evaluator(make_evaluator(scene, layout, mix)),
       mixture(make_mixture(
           applicable_strategies(mix, scene),
           {*evaluator, dynamic_cast<ChartEvaluator*>(evaluator.get()), techniques, mix.lengths, mix.rectification})),
-      films(replicate_films ? 0 : groups, MetropolisFilm(scene.film())),
+      films(replicate_films || !with_films ? 0 : groups, MetropolisFilm(scene.film())),
       blocks(groups, std::vector<BlockSums>(replicate_count(mix))),
       largest(groups),
       diagnostics(mixture.size()),
@@ -75,6 +75,8 @@ void ChainWorker::with_sink(const RunningChain& running, const Body& body) {
     if (replicate_films_) {
         PairSink<SharedMetropolisFilm> sink{{(*replicate_films_)[running.group][running.replicate]}, blocks_sink};
         body(sink);
+    } else if (films.empty()) {
+        body(blocks_sink);
     } else {
         PairSink<MetropolisFilm> sink{{films[running.group]}, blocks_sink};
         body(sink);

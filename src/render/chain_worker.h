@@ -66,9 +66,9 @@ using ReplicateFilms = std::vector<std::vector<SharedMetropolisFilm>>;
 
 class ChainWorker {
   public:
-    // `mix` is resolved. One film for each of the groups, unless there are films of replicates to add to.
+    // `mix` is resolved. `films`: one for each of the groups, unless there are films of replicates to add to, or false.
     ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films = nullptr);
+                const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films = nullptr, bool films = true);
 
     void advance(RunningChain& running, std::uint64_t mutations);
 

@@ -11,7 +11,8 @@ constexpr double fewest_effective_paths = 100;  // b is known to 10%
 constexpr double most_of_heaviest = 0.2;        // of b, by the five largest samples
 constexpr double most_disagreeing = 0.2;        // of the light
 
-std::vector<float> block_means(const RunRecord& record, const ReplicateErrors& errors, std::size_t g, std::size_t r) {
+std::vector<float> block_means(const ReplicateRecord& record, const ReplicateErrors& errors, std::size_t g,
+                               std::size_t r) {
     const double scale = errors.b(g) / errors.mutations(g) * BlockGrid::count / record.window.area();
     std::vector<float> means(BlockGrid::count + 1);
     for (int j = 0; j < BlockGrid::count; ++j) {
@@ -21,7 +22,7 @@ std::vector<float> block_means(const RunRecord& record, const ReplicateErrors& e
     return means;
 }
 
-void report_blocks(const RunRecord& record, ErrorStatistics& result) {
+void report_blocks(const ReplicateRecord& record, ErrorStatistics& result) {
     const ReplicateErrors errors(record.b, record.mutations);
     const auto part = [&](std::size_t g, std::size_t r) { return block_means(record, errors, g, r); };
     result.block_errors = errors.standard_errors(BlockGrid::count + 1, part);
@@ -41,7 +42,7 @@ void report_blocks(const RunRecord& record, ErrorStatistics& result) {
 }
 
 // Of a mean over the states of all chains.
-double squared_error_of_mean(const RunRecord& record, std::size_t observable) {
+double squared_error_of_mean(const ReplicateRecord& record, std::size_t observable) {
     double all = 0;
     for (const auto& group : record.states)
         for (const ObservableMoments& m : group) all += static_cast<double>(m.count);
@@ -71,7 +72,7 @@ Followed mean_square_jump(const ObservableJumps& jumps, const RasterWindow& wind
 }
 
 // Returns a lower bound of the time in which the chains forget their position, from their jumps.
-double report_mixing(const RunRecord& record, RenderStatistics& statistics) {
+double report_mixing(const ReplicateRecord& record, RenderStatistics& statistics) {
     ObservableMoments all;
     for (const auto& group : record.states)
         for (const ObservableMoments& m : group) all += m;
@@ -96,7 +97,7 @@ double report_mixing(const RunRecord& record, RenderStatistics& statistics) {
 }
 
 // How much of b its largest samples carry, and how many samples of equal size would make an estimate as rough.
-void report_heavy_paths(const RunRecord& record, ErrorStatistics& result) {
+void report_heavy_paths(const ReplicateRecord& record, ErrorStatistics& result) {
     double sum = 0, squares = 0;
     Largest<heaviest> largest;
     for (std::size_t g = 0; g < record.b.size(); ++g) {
@@ -136,7 +137,7 @@ void warn_of_disagreement(RenderStatistics& statistics) {
 
 }  // namespace
 
-void report_errors(const RunRecord& record, const BlockRecord& over_time, RenderStatistics& statistics) {
+void report_errors(const ReplicateRecord& record, const BlockRecord& over_time, RenderStatistics& statistics) {
     ErrorStatistics& errors = statistics.errors;
     errors.replicates = static_cast<int>(record.b[0].size());
     report_blocks(record, errors);

@@ -9,8 +9,8 @@
 namespace keyhole {
 
 // Everything a run has recorded, by groups and replicates.
-struct RunRecord {
-    explicit RunRecord(const RasterWindow& w) : window(w) {}
+struct ReplicateRecord {
+    explicit ReplicateRecord(const RasterWindow& w) : window(w) {}
 
     RasterWindow window;
     std::vector<std::vector<RunningMean>> b;  // from the bootstrap and from the chains
@@ -23,6 +23,6 @@ struct RunRecord {
 
 // Sets statistics.errors and the mixing of its strategies, whose counts are known already, and adds to its warnings.
 // `over_time`: the same blocks, which say how much the replicates disagree.
-void report_errors(const RunRecord& record, const BlockRecord& over_time, RenderStatistics& statistics);
+void report_errors(const ReplicateRecord& record, const BlockRecord& over_time, RenderStatistics& statistics);
 
 }  // namespace keyhole

@@ -104,7 +104,23 @@ struct ErrorStatistics {
     double effective_paths = 0, heaviest_share = 0;
 };
 
+// What Mix::Tuning::race saw: the winner of the sets and the others, from the best on, then the same of its neighbours.
+struct TuningStatistics {
+    struct Contender {
+        std::string name;
+        double mutations = 0, cpu_seconds = 0;
+        double error = 0;  // root mean square of the relative errors of 16 x 16 blocks, after that
+
+        double efficiency() const { return 1 / (error * error * cpu_seconds); }
+    };
+    std::vector<Contender> contenders;
+    std::string winner;
+    double mutations = 0, cpu_seconds = 0;  // of all
+};
+
 struct RenderStatistics {
+    std::optional<TuningStatistics> tuning;
+    Mix mix;  // as it was used, after tuning
     std::uint64_t mutations = 0;  // or samples
     std::uint64_t rounds = 0;     // mutations of each chain, or samples of each pixel that the filter reaches
     std::uint64_t rays = 0;

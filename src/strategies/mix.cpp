@@ -76,6 +76,12 @@ std::vector<MixField> make_fields() {
             "", P::integer("seed", 0, 0, any_seed, "another seed gives another independent image"),
             [](auto& m) -> auto& { return m.seed; }),
         field(
+            "",
+            P::choice("tuning", {"off", "race"},
+                      "\"race\": before the first mutation that counts, sets of the strategies compete in the scene, and "
+                      "the winner's weights and sizes are adapted"),
+            [](auto& m) -> auto& { return m.tuning; }),
+        field(
             "lengths", P::integer("min", 1, 1, PathLengths::longest, "shortest path").in("edges"),
             [](auto& m) -> auto& { return m.lengths.min; }),
         field(

@@ -30,6 +30,12 @@ std::unique_ptr<Evaluator> make_evaluator(const Scene& scene, const CoordinateLa
     return std::make_unique<ChartEvaluator>(scene, layout, target, needs_of(mix));
 }
 
+void fit_state(PssState& state, const Mix& mix) {
+    const StateNeeds needs = needs_of(mix);
+    if (!needs.path) state.path = {};
+    if (!needs.measure) state.measure = PathMeasure();
+}
+
 std::size_t bytes_per_state(const CoordinateLayout& layout, const Mix& mix) {
     const auto longest = static_cast<std::size_t>(layout.max_length());
     if (mix.techniques.all_at_once)

@@ -83,6 +83,12 @@ Parameter Parameter::text(std::string name, std::string description) {
     return p;
 }
 
+Parameter Parameter::of_step() const {
+    Parameter p = *this;
+    p.step_size = true;
+    return p;
+}
+
 Parameter Parameter::open() const {
     Parameter p = *this;
     p.above = true;

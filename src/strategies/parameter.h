@@ -37,7 +37,10 @@ struct Parameter {
                             std::string description);  // first: default
     static Parameter text(std::string name, std::string description);
 
+    bool step_size = false;  // tuning scales all such of a strategy together
+
     // Copies with one more property, for chains of calls in the registry.
+    Parameter of_step() const;
     Parameter open() const;
     Parameter in(std::string unit_name) const;
     Parameter or_word(std::string replacement) const;

@@ -45,8 +45,8 @@ Parameter primary_ray() { return Parameter::choice("primary", {"raster", "angle"
 
 // Sizes of steps by angle.
 std::vector<Parameter> angles() {
-    return {Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of a direction").open().in("radians"),
-            Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().in("radians")};
+    return {Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of a direction").open().of_step().in("radians"),
+            Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().of_step().in("radians")};
 }
 std::string contradiction_of_angles(const Values& v) {
     if (number(v, "r-min") < number(v, "r-max")) return {};
@@ -57,9 +57,10 @@ std::string contradiction_of_angles(const Values& v) {
 void add_sizes(StrategyInfo& info, Parameter choice) {
     const std::string name = choice.name;
     const Parameter pixels_min =
-        Parameter::number("pixels-min", 0.1, 0, 1e4, "smallest step in the image").open().in("pixels");
+        Parameter::number("pixels-min", 0.1, 0, 1e4, "smallest step in the image").open().of_step().in("pixels");
     const Parameter pixels_max =
         Parameter::number("pixels-max", 0, 0, 1e6, "largest step; 0: the radius of a twentieth of the film")
+            .of_step()
             .in("pixels");
     info.parameters = angles();
     info.parameters.insert(info.parameters.begin(), std::move(choice));
@@ -87,7 +88,8 @@ void add_cones(StrategyInfo& info) {
         Parameter::integer("boxes", 10, 0, 10000, "boxes beside the edge from which on none is opened any more")
             .only_with("estimator", "bvh-cut"),
         Parameter::number("alpha", 0.1, 0, 0.99, "smallest step over the largest, which is the cone's half-angle")
-            .open(),
+            .open()
+            .of_step(),
         Parameter::number("t1", 1e-4, 0, 0.5, "where the cone begins, in lengths of the edge").open(),
         Parameter::number("t2", 0.99, 0.5, 1, "where it ends"),
         Parameter::number("tau-min", 0.01, 0, 1.5, "smallest half-angle").open().in("radians"),
@@ -155,6 +157,7 @@ void add_portal_point(StrategyInfo& info) {
         Parameter::choice("point", {"fixed", "gaussian", "uniform"}, "how the edge's point on the portal moves"));
     info.parameters.push_back(Parameter::number("sigma", 0.1, 0, 10, "standard deviation of its steps")
                                   .open()
+                                  .of_step()
                                   .in("times the square root of the portal's area")
                                   .only_with("point", "gaussian"));
 }

@@ -30,6 +30,7 @@ StrategyInfo with_kernel() {
     const auto step = [&](const char* name, double fallback, const char* kernel, const char* description) {
         return Parameter::number(name, fallback, 0, half, description)
             .open()
+            .of_step()
             .in("of the unit cube's side")
             .only_with("kernel", kernel);
     };

@@ -1,0 +1,299 @@
+#include "render/race.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/process.h"
+#include "render/chain_run.h"
+
+namespace keyhole {
+namespace {
+
+constexpr double share_of_render = 0.1;
+constexpr double share_of_sets = 0.6;      // of the race; the rest is for the winner's weights and sizes
+constexpr int chains_of_contender = 64;    // few, so that each is long enough to show how it mixes
+constexpr double fewest_mutations = 8192;  // of a contender in its first round, for a comparison to mean something
+constexpr double step = 3;                 // by which weights and sizes are changed
+constexpr double worth_a_change = 1.1;     // more efficient than without; less may be chance
+constexpr std::uint64_t mutations_of_pass = 16;  // of each chain
+
+// Mixes whose strategies compete, the simplest first.
+const std::vector<std::string> sets = {"mmlt",   "rjmlt", "cmlt-gibbs", "mlt",          "geomlt",
+                                       "portal", "fused", "fused-geo",  "fused-portal", "fused-all"};
+
+bool applies(const MixStrategy& s, const Scene& scene, const Mix& mix) {
+    return s.weight > 0 && s.info->hindrance(scene, mix.lengths).empty();
+}
+
+// The pool with the strategies of the set that are in it and apply to the scene, at the set's weights and the pool's
+// parameters. Without strategies where the set has one that the pool leaves out.
+Mix from_set(const Mix& pool, const Mix& set, const Scene& scene) {
+    Mix mix = pool;
+    mix.tuning = Mix::Tuning::off;
+    mix.strategies.clear();
+    for (const MixStrategy& s : set.strategies) {
+        if (!applies(s, scene, pool)) continue;
+        const auto own = std::find_if(pool.strategies.begin(), pool.strategies.end(),
+                                      [&](const MixStrategy& p) { return p.info == s.info && p.weight > 0; });
+        if (own == pool.strategies.end()) {
+            mix.strategies.clear();
+            return mix;
+        }
+        mix.strategies.push_back(*own);
+        mix.strategies.back().weight = s.weight;
+    }
+    if (contradiction(mix)) mix.strategies.clear();
+    return mix;
+}
+
+struct Variant {
+    std::string name;
+    Mix mix;
+};
+
+std::vector<Variant> sets_of(const Mix& pool, const Scene& scene) {
+    std::vector<Variant> variants;
+    for (const std::string& name : sets) {
+        Mix mix = from_set(pool, builtin_mix(name), scene);
+        const bool known = std::any_of(variants.begin(), variants.end(),
+                                       [&](const Variant& v) { return v.mix.strategies == mix.strategies; });
+        if (!mix.strategies.empty() && !known) variants.push_back({name, std::move(mix)});
+    }
+    return variants;
+}
+
+// False where nothing changes or the values are not valid.
+bool scale_steps(MixStrategy& s, double factor) {
+    const Values old = s.parameters;
+    for (const Parameter& p : s.info->parameters)
+        if (p.step_size && has_effect(p, s.parameters))
+            s.parameters[p.name] = std::clamp(number(s.parameters, p.name.c_str()) * factor, p.min, p.max);
+    return s.parameters != old && settle(s).empty();
+}
+
+// One weight or the sizes of one strategy changed.
+std::vector<Variant> neighbours_of(const Variant& best) {
+    std::vector<Variant> variants;
+    for (std::size_t i = 0; i < best.mix.strategies.size(); ++i)
+        for (const double factor : {step, 1 / step}) {
+            const auto name = [&](const char* what) {
+                return fmt::format("{}, {} of {} {}{}", best.name, what, best.mix.strategies[i].label,
+                                   factor > 1 ? "times " : "over ", step);
+            };
+            Variant weight{name("weight"), best.mix};
+            weight.mix.strategies[i].weight *= factor;
+            if (best.mix.strategies.size() > 1) variants.push_back(std::move(weight));
+            Variant size{name("steps"), best.mix};
+            if (scale_steps(size.mix.strategies[i], factor)) variants.push_back(std::move(size));
+        }
+    return variants;
+}
+
+// The chains of a part of the seeds, in order: they are in proportion to the target as all are.
+Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
+    Bootstrap part = bootstrap;
+    std::size_t all = 0;
+    for (const ChainGroup& g : part.groups) all += g.seeds.size();
+    const std::size_t every = std::max<std::size_t>(1, all / static_cast<std::size_t>(chains));
+    for (ChainGroup& g : part.groups) {
+        std::vector<ChainSeed> kept;
+        for (std::size_t i = every / 2; i < g.seeds.size(); i += every) kept.push_back(g.seeds[i]);
+        if (kept.empty()) kept.push_back(g.seeds[0]);
+        g.seeds = std::move(kept);
+    }
+    return part;
+}
+
+class Contender {
+  public:
+    Contender(Variant variant, const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
+              const TechniqueDistribution& techniques, const Bootstrap& seeds)
+        : name_(std::move(variant.name)), settings_(settings) {
+        settings_.mix = std::move(variant.mix);
+        settings_.error_image = false;
+        Bootstrap own = seeds;
+        for (ChainGroup& g : own.groups)
+            for (ChainSeed& seed : g.seeds) fit_state(seed.state, settings_.mix);
+        for (const ChainGroup& g : own.groups) chains_ += static_cast<double>(g.seeds.size());
+        run_ = std::make_unique<ChainRun>(scene, settings_, layout, techniques, std::move(own), false);
+    }
+
+    void advance() {
+        const double before = cpu_seconds();
+        mutations_ += chains_ * static_cast<double>(run_->advance(mutations_of_pass));
+        seconds_ += cpu_seconds() - before;
+    }
+    double used(const RaceLength& length) const { return length.mutations ? mutations_ : seconds_; }
+    Variant variant() const { return {name_, settings_.mix}; }
+
+    // The shares of the light in the blocks by each replicate, and of all.
+    void look() { record_ = std::make_unique<ReplicateRecord>(run_->record()); }
+    const ReplicateRecord& record() const { return *record_; }
+
+    double mutations() const { return mutations_; }
+    double seconds() const { return seconds_; }
+    double error = 0;  // mean squared relative error of the blocks
+    double cost() const { return error * seconds_; }
+
+  private:
+    std::string name_;
+    RenderSettings settings_;
+    double chains_ = 0, mutations_ = 0, seconds_ = 0;
+    std::unique_ptr<ChainRun> run_;
+    std::unique_ptr<ReplicateRecord> record_;
+};
+
+// Per mutation, of one replicate; b of groups as the bootstrap knows it. NaN-free: a replicate without chains is left
+// out.
+using Blocks = std::array<double, BlockGrid::count>;
+std::vector<Blocks> block_means(const ReplicateRecord& record) {
+    std::vector<Blocks> means;
+    for (std::size_t r = 0; r < record.blocks[0].size(); ++r) {
+        Blocks sum{};
+        double mutations = 0;
+        for (std::size_t g = 0; g < record.blocks.size(); ++g) {
+            double of_group = 0;
+            for (const double n : record.mutations[g]) of_group += n;
+            RunningMean b;
+            for (const RunningMean& replicate : record.b[g]) b.merge(replicate);
+            if (!(record.mutations[g][r] > 0)) continue;
+            mutations += record.mutations[g][r];
+            for (int j = 0; j < BlockGrid::count; ++j)
+                sum[static_cast<std::size_t>(j)] += b.mean() * record.blocks[g][r][j] / record.mutations[g][r];
+        }
+        if (mutations > 0) means.push_back(sum);
+    }
+    return means;
+}
+
+class Race {
+  public:
+    Race(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
+         const TechniqueDistribution& techniques, const Bootstrap& seeds, const RaceLength& length,
+         const std::function<bool(double)>& stop)
+        : scene_(scene),
+          settings_(settings),
+          layout_(layout),
+          techniques_(techniques),
+          seeds_(seeds),
+          length_(length),
+          stop_(stop) {}
+
+    // The variants race, with a share of the length; the best is first, the others follow as they dropped out.
+    std::vector<std::unique_ptr<Contender>> run(std::vector<Variant> variants, double share) {
+        std::vector<std::unique_ptr<Contender>> field, out;
+        for (Variant& v : variants)
+            field.push_back(std::make_unique<Contender>(std::move(v), scene_, settings_, layout_, techniques_, seeds_));
+        const double rounds = std::max(1.0, std::ceil(std::log2(static_cast<double>(field.size()))));
+        const double of_round = share * length_.amount / rounds, begin = used_;
+        for (double round = 1; field.size() > 1 && !stopped_; ++round) {
+            const double each = of_round / static_cast<double>(field.size());
+            for (const auto& contender : field) {
+                const double until = contender->used(length_) + each;
+                do {
+                    contender->advance();
+                    stopped_ = stopped_ || stop_((used_ + contender->used(length_)) / length_.amount);
+                } while (contender->used(length_) < until && !stopped_);
+            }
+            used_ = begin + round * of_round;
+            rank(field);
+            const std::size_t kept = (field.size() + 1) / 2;
+            for (; field.size() > kept; field.pop_back()) out.insert(out.begin(), std::move(field.back()));
+        }
+        out.insert(out.begin(), std::move(field.front()));
+        return out;
+    }
+    bool stopped() const { return stopped_; }
+
+  private:
+    // By their errors times their time. All see the same image, so its means are those of all together.
+    static void rank(std::vector<std::unique_ptr<Contender>>& field) {
+        Blocks all{};
+        std::vector<std::vector<Blocks>> means;
+        for (const auto& contender : field) {
+            contender->look();
+            means.push_back(block_means(contender->record()));
+            for (const Blocks& replicate : means.back())
+                for (std::size_t j = 0; j < all.size(); ++j)
+                    all[j] += replicate[j] / static_cast<double>(means.back().size() * field.size());
+        }
+        double mean = 0;
+        for (const double v : all) mean += v / static_cast<double>(all.size());
+        for (std::size_t c = 0; c < field.size(); ++c) field[c]->error = squared_error(means[c], all, mean);
+        std::stable_sort(field.begin(), field.end(),
+                         [](const auto& a, const auto& b) { return a->cost() < b->cost(); });
+    }
+
+    // Relative to the blocks of `all`; dark ones count less.
+    static double squared_error(const std::vector<Blocks>& replicates, const Blocks& all, double mean) {
+        constexpr double dark = 0.05;  // of the image's mean
+        const auto n = static_cast<double>(replicates.size());
+        if (n < 2 || !(mean > 0)) return std::numeric_limits<double>::infinity();
+        double error = 0;
+        for (std::size_t j = 0; j < all.size(); ++j) {
+            double own = 0, square = 0;
+            for (const Blocks& r : replicates) own += r[j] / n;
+            for (const Blocks& r : replicates) square += (r[j] - own) * (r[j] - own);
+            error += square / (n * (n - 1)) / (all[j] * all[j] + dark * dark * mean * mean);
+        }
+        return error / static_cast<double>(all.size());
+    }
+
+    const Scene& scene_;
+    const RenderSettings& settings_;
+    const CoordinateLayout& layout_;
+    const TechniqueDistribution& techniques_;
+    const Bootstrap& seeds_;
+    const RaceLength& length_;
+    const std::function<bool(double)>& stop_;
+    double used_ = 0;
+    bool stopped_ = false;
+};
+
+void report(const std::vector<std::unique_ptr<Contender>>& field, TuningStatistics& statistics) {
+    for (const auto& c : field) {
+        statistics.contenders.push_back({c->variant().name, c->mutations(), c->seconds(), std::sqrt(c->error)});
+        statistics.cpu_seconds += c->seconds();
+        statistics.mutations += c->mutations();
+    }
+}
+
+}  // namespace
+
+RaceLength RaceLength::of(const RenderSettings& s, int threads) {
+    if (s.cpu_seconds > 0) return {share_of_render * s.cpu_seconds, false};
+    if (s.seconds > 0) return {share_of_render * s.seconds * threads, false};
+    return {share_of_render * static_cast<double>(s.mix.chain_length) * s.mix.chain_count, true};
+}
+
+RaceResult race(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
+                const TechniqueDistribution& techniques, const Bootstrap& bootstrap, const RaceLength& length,
+                const std::function<bool(double share)>& stop) {
+    const Bootstrap seeds = part_of(bootstrap, chains_of_contender);
+    Race race(scene, settings, layout, techniques, seeds, length, stop);
+    RaceResult result;
+    const auto field = race.run(sets_of(settings.mix, scene), share_of_sets);
+    report(field, result.statistics);
+    Variant best = field[0]->variant();
+
+    std::vector<Variant> variants = neighbours_of(best);
+    const double each =
+        (1 - share_of_sets) * length.amount /
+        (std::ceil(std::log2(static_cast<double>(variants.size() + 1))) * static_cast<double>(variants.size() + 1));
+    const double mutations = length.mutations ? each : each * field[0]->mutations() / field[0]->seconds();
+    if (!race.stopped() && mutations >= fewest_mutations) {
+        variants.insert(variants.begin(), best);
+        const auto tuned = race.run(std::move(variants), 1 - share_of_sets);
+        report(tuned, result.statistics);
+        const auto unchanged =
+            std::find_if(tuned.begin(), tuned.end(), [&](const auto& c) { return c->variant().name == best.name; });
+        if (tuned[0]->cost() * worth_a_change < (*unchanged)->cost()) best = tuned[0]->variant();
+    }
+    result.statistics.winner = best.name;
+    result.mix = std::move(best.mix);
+    return result;
+}
+
+}  // namespace keyhole
