@@ -59,7 +59,7 @@ int run(const BenchOptions& options) {
     const LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
     RenderSettings settings;
     settings.mutations_per_pixel = 1;  // the slices decide how long it runs
-    settings.mix = options.mix.apply(settings.mix);
+    settings.mix = options.mix.apply_found(settings.mix);
     std::vector<Throughput> results;
     results.push_back(measure_throughput(*loaded.scene, settings, 1, options.seconds));
     if (options.threads > 1)

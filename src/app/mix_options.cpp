@@ -10,6 +10,16 @@ Mix MixOptions::apply(Mix base) const {
     return base;
 }
 
+Mix MixOptions::apply_found(Mix base) const {
+    Mix mix = apply(std::move(base));
+    if (mix.tuning != Mix::Tuning::off)
+        throw InputError({},
+                         "the mix '" + mix.name +
+                             "' is found by a race in a render; valid: a mix without tuning, such as the .toml file "
+                             "that such a render writes");
+    return mix;
+}
+
 CLI::Option* add_set_option(CLI::App& command, std::function<void(const Setting&)> take) {
     const auto set = [take = std::move(take)](const std::string& text) {
         const std::size_t equals = text.find('=');
@@ -23,10 +33,11 @@ CLI::Option* add_set_option(CLI::App& command, std::function<void(const Setting&
         ->take_all();
 }
 
-std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options) {
+std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options, const std::string& fallback) {
     const auto mix = [&options](const std::string& text) { options.name = text; };
-    return {add_parsed(command, "--mix", "NAME|FILE", mix,
-                       "How the chains move: a mix that `keyhole mixes` lists, or a file (.toml) [default: mmlt]"),
+    return {add_parsed(
+                command, "--mix", "NAME|FILE", mix,
+                "How the chains move: a mix that `keyhole mixes` lists, or a file (.toml) [default: " + fallback + "]"),
             add_set_option(command, [&options](const Setting& s) { options.settings.push_back(s); })};
 }
 

@@ -18,13 +18,16 @@ struct MixOptions {
 
     // The mix `base`, or the one of --mix in its place, with the settings. Throws InputError.
     Mix apply(Mix base) const;
+    // The same, for what has no use for a mix that is yet to be found.
+    Mix apply_found(Mix base) const;
 };
 
 // --set alone.
 CLI::Option* add_set_option(CLI::App& command, std::function<void(const Setting&)> take);
 
 // --mix and --set. `options` must live until the command line has been parsed.
-std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options);
+std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options,
+                                          const std::string& fallback = "mmlt");
 
 // An option that stands for `--set KEY=VALUE`.
 CLI::Option* add_mix_key(CLI::App& command, MixOptions& options, const std::string& name, const std::string& key,

@@ -87,7 +87,8 @@ void add_path_options(CLI::App& command, RenderOptions& options) {
         options.settings.integrator = std::array{Integrator::mmlt, Integrator::bdpt, Integrator::path}[i];
     };
     add_choice(command, "-i,--integrator", {"mmlt", "bdpt", "path"}, integrator,
-               "Multiplexed Metropolis light transport, bidirectional path tracing, or path tracing [default: mmlt]")
+               "mmlt: Metropolis light transport, as --mix says; or bidirectional path tracing, or path tracing "
+               "[default: mmlt]")
         ->group(path_group);
     add_mix_key(command, options.mix, "--max-length", "lengths.max",
                 "Most edges of a path: 1 sees lights, 2 adds direct light [default: the scene file's, else 12]")
@@ -97,7 +98,7 @@ void add_path_options(CLI::App& command, RenderOptions& options) {
 }
 
 void add_chain_options(CLI::App& command, MixOptions& mix) {
-    std::vector<CLI::Option*> options = add_mix_options(command, mix);
+    std::vector<CLI::Option*> options = add_mix_options(command, mix, "auto, which finds one for the scene");
     options.push_back(add_mix_key(command, mix, "--chains", "chains.count", "Number of chains, or auto"));
     options.push_back(add_mix_key(command, mix, "--bootstrap", "bootstrap.samples",
                                   "Independent samples to start the chains from, or auto"));
@@ -158,7 +159,8 @@ void complete_render_options(const CLI::App& command, RenderOptions& options) {
     if (options.scene.filename.empty()) throw InputError({}, "SCENE is required (or --like)");
     refuse_without_effect(command, options);
     settings.error_image = !options.error_image.empty();
-    settings.mix = options.mix.apply(settings.mix);
+    const bool chooses = options.like.empty() && settings.integrator == Integrator::mmlt;
+    settings.mix = options.mix.apply(chooses ? builtin_mix("auto") : settings.mix);
     const bool mix_says = settings.integrator == Integrator::mmlt && settings.mix.chain_length > 0;
     if (settings.seconds == 0 && settings.mutations_per_pixel == 0 && !mix_says)
         settings.mutations_per_pixel = default_mutations_per_pixel;

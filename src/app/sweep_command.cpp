@@ -50,7 +50,7 @@ bool is_integer(const Mix& mix, const std::string& key) {
 
 int run(const SweepOptions& options) {
     std::vector<ComparedEntry> entries;
-    const Mix base = options.comparison.mix.apply(builtin_mix("mmlt"));
+    const Mix base = options.comparison.mix.apply_found(builtin_mix("mmlt"));
     for (std::string text : listed_values(options.values, options.steps)) {
         if (is_integer(base, options.key) && text.find_first_of(".e") != std::string::npos)
             text = fmt::format("{:.0f}", parse_real(text, -1e18, 1e18));

@@ -34,7 +34,7 @@ int run(const TraceOptions& options) {
     check_writable(options.output);
     const LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
     RenderSettings settings;
-    settings.mix = options.mix.apply(settings.mix);
+    settings.mix = options.mix.apply_found(settings.mix);
     settings.mutations_per_pixel = 1;  // of no effect: chains end where they are told to
     const ChainTrace trace = trace_chain(*loaded.scene, settings, static_cast<std::uint64_t>(options.mutations));
     if (trace.steps.empty()) {

@@ -109,21 +109,27 @@ json point_json(const EntryRuns& entry, int part, const PointResults& point) {
     return j;
 }
 
+// By name, as they are first seen: where mixes are tuned, runs may have different ones.
 json strategies_json(const EntryRuns& entry) {
-    json strategies = json::array();
-    const auto& first = entry.records.front().statistics.strategies;
-    for (std::size_t i = 0; i < first.size(); ++i) {
-        StrategyStatistics sum;
-        for (const RunRecord& record : entry.records) {
-            const StrategyStatistics& s = record.statistics.strategies.at(i);
+    std::vector<StrategyStatistics> sums;
+    for (const RunRecord& record : entry.records)
+        for (const StrategyStatistics& s : record.statistics.strategies) {
+            auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return sum.name == s.name; });
+            if (found == sums.end()) {
+                sums.emplace_back().name = s.name;
+                found = sums.end() - 1;
+            }
+            StrategyStatistics& sum = *found;
             sum.proposals += s.proposals;
             sum.accepted += s.accepted;
             sum.mean_acceptance += s.mean_acceptance * static_cast<double>(s.proposals);
             sum.luminance.effective_sample_size += s.luminance.effective_sample_size;
             for (const auto& [kind, count] : s.failures) sum.failures[kind] += count;
         }
+    json strategies = json::array();
+    for (StrategyStatistics& sum : sums) {
         if (sum.proposals > 0) sum.mean_acceptance /= static_cast<double>(sum.proposals);
-        json j = {{"name", first[i].name},
+        json j = {{"name", sum.name},
                   {"proposals", sum.proposals},
                   {"accepted", sum.accepted},
                   {"mean_acceptance", sum.mean_acceptance},

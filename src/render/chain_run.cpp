@@ -79,6 +79,12 @@ Diagnostics ChainRun::diagnostics() const {
     return total;
 }
 
+std::uint64_t ChainRun::rays() const {
+    std::uint64_t rays = 0;
+    for (const auto& worker : workers_) rays += worker->evaluator->tracer().rays();
+    return rays;
+}
+
 template <class Sink>
 void ChainRun::splat_held(Sink& sink, std::size_t group, std::size_t replicate) const {
     for (const RunningChain& c : chains_)
@@ -118,7 +124,7 @@ Image ChainRun::develop_errors() const {
 }
 
 void ChainRun::report(const std::vector<const MixStrategy*>& strategies, RenderStatistics& statistics) const {
-    for (const auto& worker : workers_) statistics.rays += worker->evaluator->tracer().rays();
+    statistics.rays += rays();
     report_b(statistics);
     const Diagnostics total = diagnostics();
     for (std::size_t i = 0; i < strategies.size(); ++i)

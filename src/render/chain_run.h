@@ -21,6 +21,7 @@ class ChainRun {
     std::uint64_t advance(std::uint64_t most);
 
     Diagnostics diagnostics() const;
+    std::uint64_t rays() const;
     Image develop() const;
     // Standard errors of the values of develop(). Only where there are films of replicates.
     Image develop_errors() const;

@@ -20,8 +20,8 @@ constexpr double worth_a_change = 1.1;     // more efficient than without; less 
 constexpr std::uint64_t mutations_of_pass = 16;  // of each chain
 
 // Mixes whose strategies compete, the simplest first.
-const std::vector<std::string> sets = {"mmlt",   "rjmlt", "cmlt-gibbs", "mlt",          "geomlt",
-                                       "portal", "fused", "fused-geo",  "fused-portal", "fused-all"};
+const std::vector<std::string> sets = {"mmlt",  "rjmlt",     "mlt",          "geomlt",   "portal",
+                                       "fused", "fused-geo", "fused-portal", "fused-all"};
 
 bool applies(const MixStrategy& s, const Scene& scene, const Mix& mix) {
     return s.weight > 0 && s.info->hindrance(scene, mix.lengths).empty();
@@ -126,23 +126,23 @@ class Contender {
         seconds_ += cpu_seconds() - before;
     }
     double used(const RaceLength& length) const { return length.mutations ? mutations_ : seconds_; }
+    // What the error has cost. A race by numbers of mutations must end in the same way each time, so rays stand for
+    // time there, and each mutation counts as one more.
+    double cost(const RaceLength& length) const {
+        return error * (length.mutations ? static_cast<double>(run_->rays()) + mutations_ : seconds_);
+    }
     Variant variant() const { return {name_, settings_.mix}; }
 
-    // The shares of the light in the blocks by each replicate, and of all.
-    void look() { record_ = std::make_unique<ReplicateRecord>(run_->record()); }
-    const ReplicateRecord& record() const { return *record_; }
-
+    ReplicateRecord record() const { return run_->record(); }
     double mutations() const { return mutations_; }
     double seconds() const { return seconds_; }
     double error = 0;  // mean squared relative error of the blocks
-    double cost() const { return error * seconds_; }
 
   private:
     std::string name_;
     RenderSettings settings_;
     double chains_ = 0, mutations_ = 0, seconds_ = 0;
     std::unique_ptr<ChainRun> run_;
-    std::unique_ptr<ReplicateRecord> record_;
 };
 
 // Per mutation, of one replicate; b of groups as the bootstrap knows it. NaN-free: a replicate without chains is left
@@ -209,11 +209,10 @@ class Race {
 
   private:
     // By their errors times their time. All see the same image, so its means are those of all together.
-    static void rank(std::vector<std::unique_ptr<Contender>>& field) {
+    void rank(std::vector<std::unique_ptr<Contender>>& field) const {
         Blocks all{};
         std::vector<std::vector<Blocks>> means;
         for (const auto& contender : field) {
-            contender->look();
             means.push_back(block_means(contender->record()));
             for (const Blocks& replicate : means.back())
                 for (std::size_t j = 0; j < all.size(); ++j)
@@ -223,7 +222,7 @@ class Race {
         for (const double v : all) mean += v / static_cast<double>(all.size());
         for (std::size_t c = 0; c < field.size(); ++c) field[c]->error = squared_error(means[c], all, mean);
         std::stable_sort(field.begin(), field.end(),
-                         [](const auto& a, const auto& b) { return a->cost() < b->cost(); });
+                         [&](const auto& a, const auto& b) { return a->cost(length_) < b->cost(length_); });
     }
 
     // Relative to the blocks of `all`; dark ones count less.
@@ -289,7 +288,7 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
         report(tuned, result.statistics);
         const auto unchanged =
             std::find_if(tuned.begin(), tuned.end(), [&](const auto& c) { return c->variant().name == best.name; });
-        if (tuned[0]->cost() * worth_a_change < (*unchanged)->cost()) best = tuned[0]->variant();
+        if (tuned[0]->cost(length) * worth_a_change < (*unchanged)->cost(length)) best = tuned[0]->variant();
     }
     result.statistics.winner = best.name;
     result.mix = std::move(best.mix);

@@ -1,0 +1,81 @@
+// The mix auto: what a race chooses, and that the render after it is one of the mix it chose.
+#include "render/race.h"
+
+#include <gtest/gtest.h>
+
+#include "own_scenes.h"
+
+namespace keyhole {
+namespace {
+
+RenderSettings automatic(double mutations_per_pixel) {
+    RenderSettings settings;
+    settings.mix = builtin_mix("auto");
+    settings.mix.chain_count = 128;
+    settings.mix.bootstrap_samples = 20000;
+    settings.mix.lengths.max = 6;
+    settings.mutations_per_pixel = mutations_per_pixel;
+    return settings;
+}
+
+// Only moves that apply to the scene, nothing left to tune; and the same image as by that mix alone.
+TEST(Race, FindsAMixThatMakesTheSameImageAgain) {
+    for (const char* name : {"cornell-box", "keyhole-room", "glossy-room"}) {
+        const auto scene = own_scene(name, 32, 32);
+        const RenderSettings settings = automatic(400);
+        const RenderResult result = render(*scene, settings);
+        ASSERT_TRUE(result.statistics.tuning);
+        const Mix& mix = result.statistics.mix;
+        EXPECT_EQ(mix.tuning, Mix::Tuning::off);
+        for (const std::string& warning : result.statistics.warnings) EXPECT_FALSE(warning.starts_with("strategy"));
+        for (const MixStrategy& s : mix.strategies) EXPECT_EQ(s.info->hindrance(*scene, mix.lengths), "") << name;
+
+        RenderSettings again = settings;
+        again.mix = parse_mix(write_mix(mix), "again");
+        EXPECT_EQ(render(*scene, again).image.rgb, result.image.rgb) << name;
+    }
+}
+
+// By numbers of mutations: whatever the threads and the time.
+TEST(Race, EndsInTheSameWayEachTime) {
+    const auto scene = own_scene("three-planes", 24, 24);
+    RenderSettings settings = automatic(1000);
+    settings.threads = 1;
+    const RenderResult one = render(*scene, settings);
+    settings.threads = 3;
+    const RenderResult three = render(*scene, settings);
+    EXPECT_EQ(one.statistics.mix, three.statistics.mix);
+    EXPECT_EQ(one.image.rgb, three.image.rgb);
+    EXPECT_EQ(one.statistics.tuning->contenders.size(), three.statistics.tuning->contenders.size());
+}
+
+// What the pool leaves out is not used, and the pool's parameters are.
+TEST(Race, KeepsToThePool) {
+    const auto scene = own_scene("cornell-box", 32, 32);
+    RenderSettings settings = automatic(200);
+    apply_settings(settings.mix,
+                   {{"lens.weight", "0", ""}, {"lens-geo.weight", "0", ""}, {"small-step.s1", "1e-9", ""}});
+    const RenderResult result = render(*scene, settings);
+    std::vector<std::string> names;
+    for (const auto& c : result.statistics.tuning->contenders) names.push_back(c.name);
+    for (const std::string& name : names) EXPECT_TRUE(name == "mmlt" || name == "rjmlt" || name.find(',') != name.npos);
+    for (const MixStrategy& s : result.statistics.mix.strategies)
+        if (s.info->name == "small-step") {
+            EXPECT_LE(number(s.parameters, "s1"), 3e-9);
+        }
+}
+
+// Small steps that move nothing lose against perturbations that do.
+TEST(Race, IsWonByMovesThatMove) {
+    const auto scene = own_scene("four-holes", 32, 32);
+    RenderSettings settings = automatic(1500);
+    apply_settings(settings.mix, {{"small-step.s1", "1e-9", ""}, {"small-step.s2", "2e-9", ""}});
+    const RenderResult result = render(*scene, settings);
+    bool perturbs = false;
+    for (const MixStrategy& s : result.statistics.mix.strategies)
+        perturbs = perturbs || s.info->name.starts_with("lens");
+    EXPECT_TRUE(perturbs) << result.statistics.tuning->winner;
+}
+
+}  // namespace
+}  // namespace keyhole
