@@ -24,6 +24,7 @@ void add_bench_command(CLI::App& keyhole, Runner& runner);
 void add_mixes_command(CLI::App& keyhole, Runner& runner);
 void add_compare_command(CLI::App& keyhole, Runner& runner);
 void add_sweep_command(CLI::App& keyhole, Runner& runner);
+void add_tradeoff_command(CLI::App& keyhole, Runner& runner);
 void add_roundtrip_command(CLI::App& keyhole, Runner& runner);
 void add_portals_command(CLI::App& keyhole, Runner& runner);
 void add_cones_command(CLI::App& keyhole, Runner& runner);

@@ -188,9 +188,15 @@ ComparedEntry integrator_entry(const ComparisonOptions& options, Integrator inte
 }
 
 int run_comparison_command(ComparisonOptions options, std::vector<ComparedEntry> entries) {
-    complete(options, entries.front().parameter ? "sweep" : "compare");
-    options.plan.entries = std::move(entries);
+    const std::string command = entries.front().parameter ? "sweep" : "compare";
+    return run_comparison_command(std::move(options), command,
+                                  [&](const LoadedScene&, ComparisonPlan&) { return std::move(entries); });
+}
+
+int run_comparison_command(ComparisonOptions options, const std::string& command, const MakeEntries& make) {
+    complete(options, command);
     const LoadedScene loaded = read_scene(options.scene.filename, options.scene.reader);
+    options.plan.entries = make(loaded, options.plan);
     const Verbosity verbosity = options.quiet     ? Verbosity::quiet
                                 : options.verbose ? Verbosity::verbose
                                                   : Verbosity::normal;
@@ -211,6 +217,8 @@ int run_comparison_command(ComparisonOptions options, std::vector<ComparedEntry>
     line.clear();
     if (!outcome.results.is_null() && !options.quiet) {
         print_results(outcome.results);
+        for (const Json& knob : outcome.results.value("tradeoff", Json::array()))
+            fmt::print("{}: {}\n", knob.at("knob").get<std::string>(), knob.at("conclusion").get<std::string>());
         if (const std::size_t count = warning_count(outcome.results); count > 0)
             fmt::print("{} warning{} of entries: see the page\n", count, count == 1 ? "" : "s");
         const std::filesystem::path folder(options.plan.folder);

@@ -30,6 +30,10 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options);
 // Returns the exit code.
 int run_comparison_command(ComparisonOptions options, std::vector<ComparedEntry> entries);
 
+// The same for entries that depend on the scene: make(loaded, plan) gives them, and may complete the plan.
+using MakeEntries = std::function<std::vector<ComparedEntry>(const LoadedScene& loaded, ComparisonPlan& plan)>;
+int run_comparison_command(ComparisonOptions options, const std::string& command, const MakeEntries& make);
+
 // Path or bdpt, with the lengths that the settings say.
 ComparedEntry integrator_entry(const ComparisonOptions& options, Integrator integrator);
 

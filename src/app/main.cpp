@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
     add_render_command(keyhole, runner);
     add_compare_command(keyhole, runner);
     add_sweep_command(keyhole, runner);
+    add_tradeoff_command(keyhole, runner);
     add_diff_command(keyhole, runner);
     add_info_command(keyhole, runner);
     add_bench_command(keyhole, runner);

@@ -39,7 +39,7 @@ class Comparison {
         require_different_names();
         const std::string program = program_hash();
         for (ComparedEntry& entry : plan_.entries) {
-            entry.mix = resolve(scene, settings(entry, 0)).mix;
+            entry.mix = resolve(scene_of(entry), settings(entry, 0)).mix;
             entry.mix.chain_length = 0;  // the comparison says how long
             stores_.emplace_back(plan_.folder, entry.name, identity(entry, program));
         }
@@ -69,6 +69,7 @@ class Comparison {
 
   private:
     std::string file(const char* name) const { return (fs::path(plan_.folder) / name).string(); }
+    const Scene& scene_of(const ComparedEntry& entry) const { return entry.scene ? *entry.scene : scene_; }
     bool stopped() const { return callbacks_.stop && callbacks_.stop(); }
     void warn(const std::string& message) const {
         if (callbacks_.warn) callbacks_.warn(message);
@@ -201,7 +202,8 @@ class Comparison {
         const auto keep = [&](RunPart part, const Image& image, const RenderStatistics& statistics) {
             record.parts.push_back(part);
             WriteOptions options;
-            if (callbacks_.describe) options.metadata = callbacks_.describe(resolve(scene_, s), statistics);
+            if (callbacks_.describe)
+                options.metadata = callbacks_.describe(resolve(scene_of(plan_.entries[e]), s), statistics);
             stores_[e].write_image(run, part.part, image, options);
         };
         RenderCallbacks callbacks;
@@ -211,7 +213,7 @@ class Comparison {
         callbacks.checkpoint = [&](const Checkpoint& c) {
             keep({static_cast<int>(std::lround(1 / c.share)), c.seconds, c.cpu_seconds, c.mutations}, c.image, {});
         };
-        RenderResult result = render(scene_, s, callbacks);
+        RenderResult result = render(scene_of(plan_.entries[e]), s, callbacks);
         if (result.statistics.interrupted) return;
         RenderStatistics& statistics = record.statistics = std::move(result.statistics);
         const double seconds = statistics.seconds_bootstrap + statistics.seconds_render;

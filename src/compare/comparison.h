@@ -20,12 +20,19 @@ struct VariedParameter {
     double value = 0;
 };
 
+// `keyhole tradeoff`: which knob is not as in the first entry.
+struct KnobSetting {
+    std::string name, value;
+};
+
 // One way to render: a mix, or an integrator.
 struct ComparedEntry {
     std::string name;  // unique in the comparison
     Integrator integrator = Integrator::mmlt;
-    Mix mix;                                   // for path and bdpt its lengths only
-    std::optional<VariedParameter> parameter;  // of a sweep
+    Mix mix;                                         // for path and bdpt its lengths only
+    std::optional<VariedParameter> parameter;        // of a sweep
+    std::optional<KnobSetting> knob = std::nullopt;  // of a trade-off
+    const Scene* scene = nullptr;                    // the same scene, with other ray queries; null: the comparison's
 };
 
 struct ComparisonPlan {
@@ -40,6 +47,8 @@ struct ComparisonPlan {
     Integrator reference_integrator = Integrator::bdpt;
     double reference_seconds = 600;
     bool discard = false;  // runs in the folder that are of something else, in place of refusing to go on
+
+    std::map<std::string, std::string> knobs;  // what the first entry has, by name; of a trade-off
 
     // For the results.
     std::string scene_file, scene_name, command, program;

@@ -14,6 +14,7 @@
 #include "compare/error_split.h"
 #include "compare/metrics.h"
 #include "compare/speed_up.h"
+#include "compare/tradeoff.h"
 
 namespace keyhole {
 namespace {
@@ -175,6 +176,7 @@ json entry_head(const ComparedEntry& entry, int runs) {
         if (!entry.mix.description.empty()) j["description"] = entry.mix.description;
     }
     if (entry.parameter) j["parameter"] = {{"name", entry.parameter->name}, {"value", entry.parameter->value}};
+    if (entry.knob) j["knob"] = {{"name", entry.knob->name}, {"value", entry.knob->value}};
     return j;
 }
 
@@ -289,6 +291,7 @@ json make_results(const Scene& scene, const ComparisonPlan& plan, const Referenc
         }
         results["entries"].push_back(std::move(j));
     }
+    if (!plan.knobs.empty()) results["tradeoff"] = make_tradeoff(results, plan.knobs);
     results["warnings"] = reference_warnings(reference, own_relmse, smallest);
     return results;
 }

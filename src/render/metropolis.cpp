@@ -59,6 +59,7 @@ RenderResult render_metropolis(const Scene& scene, const RenderSettings& setting
         RaceResult result_of_race = race(scene, settings, layout, techniques, bootstrap, length, stop);
         mix = std::move(result_of_race.mix);
         statistics.tuning = std::move(result_of_race.statistics);
+        statistics.seconds_bootstrap = control.elapsed();
         for (ChainGroup& group : bootstrap.groups)
             for (ChainSeed& seed : group.seeds) fit_state(seed.state, mix);
     }

@@ -11,7 +11,8 @@
 namespace keyhole {
 namespace {
 
-constexpr double share_of_render = 0.1;
+// Of the render; of long ones less.
+constexpr double share_of_short = 0.1, share_of_long = 0.01;
 constexpr double share_of_sets = 0.6;      // of the race; the rest is for the winner's weights and sizes
 constexpr int chains_of_contender = 64;    // few, so that each is long enough to show how it mixes
 constexpr double fewest_mutations = 8192;  // of a contender in its first round, for a comparison to mean something
@@ -27,8 +28,8 @@ bool applies(const MixStrategy& s, const Scene& scene, const Mix& mix) {
     return s.weight > 0 && s.info->hindrance(scene, mix.lengths).empty();
 }
 
-// The pool with the strategies of the set that are in it and apply to the scene, at the set's weights and the pool's
-// parameters. Without strategies where the set has one that the pool leaves out.
+// The pool with the strategies of the set that are in it and apply to the scene, at the set's weights times the pool's,
+// with the pool's parameters. Without strategies where the set has one that the pool leaves out.
 Mix from_set(const Mix& pool, const Mix& set, const Scene& scene) {
     Mix mix = pool;
     mix.tuning = Mix::Tuning::off;
@@ -42,7 +43,7 @@ Mix from_set(const Mix& pool, const Mix& set, const Scene& scene) {
             return mix;
         }
         mix.strategies.push_back(*own);
-        mix.strategies.back().weight = s.weight;
+        mix.strategies.back().weight *= s.weight;
     }
     if (contradiction(mix)) mix.strategies.clear();
     return mix;
@@ -62,15 +63,6 @@ std::vector<Variant> sets_of(const Mix& pool, const Scene& scene) {
         if (!mix.strategies.empty() && !known) variants.push_back({name, std::move(mix)});
     }
     return variants;
-}
-
-// False where nothing changes or the values are not valid.
-bool scale_steps(MixStrategy& s, double factor) {
-    const Values old = s.parameters;
-    for (const Parameter& p : s.info->parameters)
-        if (p.step_size && has_effect(p, s.parameters))
-            s.parameters[p.name] = std::clamp(number(s.parameters, p.name.c_str()) * factor, p.min, p.max);
-    return s.parameters != old && settle(s).empty();
 }
 
 // One weight or the sizes of one strategy changed.
@@ -262,9 +254,12 @@ void report(const std::vector<std::unique_ptr<Contender>>& field, TuningStatisti
 }  // namespace
 
 RaceLength RaceLength::of(const RenderSettings& s, int threads) {
-    if (s.cpu_seconds > 0) return {share_of_render * s.cpu_seconds, false};
-    if (s.seconds > 0) return {share_of_render * s.seconds * threads, false};
-    return {share_of_render * static_cast<double>(s.mix.chain_length) * s.mix.chain_count, true};
+    const auto share = [](double whole, double short_one) {
+        return std::min(share_of_short * whole, short_one + share_of_long * whole);
+    };
+    if (s.cpu_seconds > 0) return {share(s.cpu_seconds, 10), false};
+    if (s.seconds > 0) return {share(s.seconds * threads, 10.0 * threads), false};
+    return {share(static_cast<double>(s.mix.chain_length) * s.mix.chain_count, 1e7), true};
 }
 
 RaceResult race(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,

@@ -124,7 +124,7 @@ struct RenderStatistics {
     std::uint64_t mutations = 0;  // or samples
     std::uint64_t rounds = 0;     // mutations of each chain, or samples of each pixel that the filter reaches
     std::uint64_t rays = 0;
-    double seconds_bootstrap = 0, seconds_render = 0, cpu_seconds = 0;
+    double seconds_bootstrap = 0, seconds_render = 0, cpu_seconds = 0;  // the first with tuning
     // Integral of f* over the area of the crop window: the mean luminance of the image, where the mix does not say
     // another target. Its error is that of the independent samples it is the mean of.
     double b = 0, b_standard_error = 0;

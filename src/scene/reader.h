@@ -16,6 +16,7 @@ namespace keyhole {
 struct ReaderOptions {
     std::map<std::string, std::string> defines;  // -D name=value
     bool lenient = false;                        // unknown parameters are warnings
+    bool robust = false;                         // watertight but slower ray queries
     int width = 0, height = 0;                   // > 0: replaces the film's size
     std::string portals;                         // a scene file that holds portals alone, added to this one
     bool override_crop = false;

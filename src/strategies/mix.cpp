@@ -77,9 +77,10 @@ std::vector<MixField> make_fields() {
             [](auto& m) -> auto& { return m.seed; }),
         field(
             "",
-            P::choice("tuning", {"off", "race"},
-                      "\"race\": before the first mutation that counts, sets of the strategies compete in the scene, and "
-                      "the winner's weights and sizes are adapted"),
+            P::choice(
+                "tuning", {"off", "race"},
+                "\"race\": before the first mutation that counts, sets of the strategies compete in the scene, and "
+                "the winner's weights and sizes are adapted"),
             [](auto& m) -> auto& { return m.tuning; }),
         field(
             "lengths", P::integer("min", 1, 1, PathLengths::longest, "shortest path").in("edges"),
@@ -257,6 +258,14 @@ std::string settle(MixStrategy& strategy) {
     for (const Parameter& p : strategy.info->parameters)
         if (!has_effect(p, strategy.parameters)) strategy.parameters[p.name] = p.fallback;
     return strategy.info->contradiction ? strategy.info->contradiction(strategy.parameters) : "";
+}
+
+bool scale_steps(MixStrategy& s, double factor) {
+    const Values old = s.parameters;
+    for (const Parameter& p : s.info->parameters)
+        if (p.step_size && has_effect(p, s.parameters))
+            s.parameters[p.name] = std::clamp(number(s.parameters, p.name.c_str()) * factor, p.min, p.max);
+    return s.parameters != old && settle(s).empty();
 }
 
 std::optional<Contradiction> contradiction(const Mix& mix) {

@@ -75,6 +75,9 @@ void set_value(Mix& mix, const std::string& key, const std::string& text);
 
 // Puts parameters without effect back to their defaults. What is wrong with the strategy's parameters; empty: nothing.
 std::string settle(MixStrategy& strategy);
+// Multiplies the sizes of the strategy's steps, within what is valid. False where nothing changes or the result is not
+// valid.
+bool scale_steps(MixStrategy& strategy, double factor);
 // The same of the fields outside of strategies.
 void settle_fields(Mix& mix);
 

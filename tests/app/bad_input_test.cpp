@@ -29,7 +29,8 @@ struct BadOption {
 TEST_F(BadInput, OptionsAreRefusedWithWhatIsValid) {
     const std::vector<BadOption> cases = {
         {{}, "no command given"},
-        {{"rendr", "room.xml"}, "unknown command 'rendr'; did you mean 'render'? valid names: render, compare, sweep, diff, info"},
+        {{"rendr", "room.xml"},
+         "unknown command 'rendr'; did you mean 'render'? valid names: render, compare, sweep, tradeoff, diff, info"},
         {{"render"}, "SCENE is required"},
         {{"render", "room.xml", "--tim", "5s"}, "unknown option '--tim'; did you mean '--time'? valid names: "},
         {{"render", "room.xml", "extra.xml"}, "one argument too many: 'extra.xml'"},
@@ -56,7 +57,7 @@ TEST_F(BadInput, OptionsAreRefusedWithWhatIsValid) {
         {{"render", "room.xml", "-q", "-v"}, "excludes"},
         {{"render", "room.xml", "-o", "a.jpg"}, "'a.jpg' has the unknown extension '.jpg'; valid extensions: .exr"},
         {{"render", "room.xml", "-o", "a"}, "'a' has no extension; valid extensions: .exr"},
-        {{"render", "room.xml", "--mix", ""}, "valid names: cmlt, "},
+        {{"render", "room.xml", "--mix", ""}, "valid names: auto, cmlt, "},
         {{"render", ""}, "SCENE is required"},
         {{"render", "."}, "'.' is not a file"},
         {{"info", "/dev/null"}, "'/dev/null' is not a file"},

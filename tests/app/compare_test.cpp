@@ -54,6 +54,38 @@ TEST_F(Compare, MixesAndIntegrators) {
     EXPECT_THAT(files(), testing::Contains("out"));
 }
 
+TEST_F(Compare, TradeoffTurnsEachKnob) {
+    std::vector<std::string> arguments = quick({"--mix", "fused-geo", "--knobs", "cones,rectification,robust"});
+    arguments[0] = "tradeoff";
+    const Finished done = run(arguments);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(done.out, AllOf(HasSubstr("cones: "), HasSubstr("rectification: "), HasSubstr("robust: ")));
+    EXPECT_EQ(entry_names("out/results.json"),
+              (std::set<std::string>{"fused-geo", "cones=bvh-cut 5", "cones=bvh-cut 20", "cones=bvh-cut 40",
+                                     "cones=fast", "cones=exact", "rectification=exclude", "rectification=walk-on",
+                                     "rectification=retry", "robust=on"}));
+    const auto results = json("out/results.json");
+    ASSERT_EQ(results["tradeoff"].size(), 3u);
+    EXPECT_EQ(results["tradeoff"][0]["settings"].size(), 6u);
+
+    arguments[arguments.size() - 1] = "cone";
+    EXPECT_THAT(run(arguments).err, HasSubstr("unknown knob 'cone'"));
+    arguments[arguments.size() - 3] = "mmlt";
+    arguments[arguments.size() - 1] = "cones";
+    EXPECT_THAT(run(arguments).err, HasSubstr("has none of these knobs"));
+}
+
+// The mix auto may be another one in each run.
+TEST_F(Compare, AutoIsAnEntryLikeAnother) {
+    const Finished done = run(quick({"--mixes", "mmlt,auto"}));
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_EQ(entry_names("out/results.json"), (std::set<std::string>{"mmlt", "auto"}));
+    ASSERT_EQ(run({"render", "--like", "out/runs/auto/run-2.exr", "-o", "again.exr"}).exit_code, 0);
+    EXPECT_EQ(read_image(path("again.exr")).rgb, read_image(path("out/runs/auto/run-2.exr")).rgb);
+    EXPECT_THAT(run({"sweep", "room.xml", "--mix", "auto", "--vary", "large-step.weight=1,2"}).err,
+                HasSubstr("is found by a race in a render"));
+}
+
 // An image of a run can be made again from itself.
 TEST_F(Compare, ImagesAreThoseOfRender) {
     ASSERT_EQ(run(quick({"--mixes", "mmlt"})).exit_code, 0);

@@ -78,6 +78,8 @@ std::vector<std::string> quick_render(const std::string& scene, std::vector<std:
     arguments.insert(arguments.end(), more.begin(), more.end());
     if (std::find(more.begin(), more.end(), "--integrator") == more.end())
         arguments.insert(arguments.end(), {"--chains", "64", "--bootstrap", "4096"});
+    const auto is_mix = [](const std::string& a) { return a == "--mix" || a == "--like" || a == "--integrator"; };
+    if (std::none_of(more.begin(), more.end(), is_mix)) arguments.insert(arguments.end(), {"--mix", "mmlt"});
     return arguments;
 }
 

@@ -23,8 +23,8 @@ class InterruptedRender : public CommandTest {
     InterruptedRender() { write("room.xml", room_scene); }
 
     static std::vector<std::string> long_render() {
-        return {"render",          "room.xml", "-o",          "a.exr", "--time",   "1h",
-                "--preview-every", "10ms",     "--bootstrap", "4096",  "--chains", "64"};
+        return {"render", "--mix",           "mmlt", "room.xml",    "-o",   "a.exr",    "--time",
+                "1h",     "--preview-every", "10ms", "--bootstrap", "4096", "--chains", "64"};
     }
     bool wait_for_preview(Process& process) const {
         return process.wait_until([this] { return fs::exists(path("a.exr")); });
@@ -112,7 +112,7 @@ TEST_F(InterruptedRender, ImageIsRescuedWhenItsFolderVanishes) {
     fs::create_directory(path("tmp"));
     std::ofstream(path("tmp/a.exr")) << "somebody else's";
     auto arguments = long_render();
-    arguments[3] = "out/a.exr";
+    arguments[5] = "out/a.exr";
     Process process(folder(), arguments, [this] { setenv("TMPDIR", path("tmp").c_str(), 1); });
     ASSERT_TRUE(process.wait_until([this] { return fs::exists(path("out/a.exr")); })) << process.err();
     fs::rename(path("out"), path("elsewhere"));

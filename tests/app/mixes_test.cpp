@@ -31,7 +31,9 @@ TEST_F(MixesCommand, AMixThatWasPrintedIsAMixFile) {
     EXPECT_EQ(run({"mixes", "show", "mine.toml"}).out, run({"mixes", "show", "mmlt-gaussian"}).out);
     ASSERT_EQ(run(quick_render("room.xml", {"-o", "a.exr", "--mix", "mine.toml"})).exit_code, 0);
     ASSERT_EQ(run(quick_render("room.xml", {"-o", "b.exr", "--mix", "mmlt-gaussian"})).exit_code, 0);
-    ASSERT_EQ(run(quick_render("room.xml", {"-o", "c.exr", "--set", "small-step.kernel=gaussian"})).exit_code, 0);
+    ASSERT_EQ(run(quick_render("room.xml", {"-o", "c.exr", "--mix", "mmlt", "--set", "small-step.kernel=gaussian"}))
+                  .exit_code,
+              0);
     ASSERT_EQ(run(quick_render("room.xml", {"-o", "d.exr"})).exit_code, 0);
     const auto b = [&](const char* name) { return json(name)["statistics"]["b"]; };
     EXPECT_EQ(b("a.json"), b("b.json"));
@@ -41,6 +43,7 @@ TEST_F(MixesCommand, AMixThatWasPrintedIsAMixFile) {
 
 TEST_F(MixesCommand, SettingsAndTheirOwnOptionsEndUpInTheReport) {
     const Finished done = run({"render",       "room.xml",
+                               "--mix",        "mmlt",
                                "-n",           "4",
                                "--bootstrap",  "4096",
                                "-o",           "a.exr",
@@ -64,7 +67,8 @@ TEST_F(MixesCommand, SaysWhatIsWrong) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
         {{"mixes", "show"}, "MIX is required"},
         {{"mixes", "sow", "mmlt"}, "unknown command 'sow'; did you mean 'show'? valid names: show, strategies"},
-        {{"mixes", "show", "mmmlt"}, "unknown mix 'mmmlt'; did you mean 'mmlt'? valid names: cmlt, cmlt-exchange, "},
+        {{"mixes", "show", "mmmlt"},
+         "unknown mix 'mmmlt'; did you mean 'mmlt'? valid names: auto, cmlt, cmlt-exchange, "},
         {{"mixes", "show", "bad.toml"}, "bad.toml:3:10: 'weight' cannot be -1; valid: a number from 0"},
         {{"render", "room.xml", "--mix", "bad.toml"}, "bad.toml:3:10: "},
         {{"render", "room.xml", "--mix", "none.toml"}, "none.toml: the mix file cannot be read"},
@@ -72,7 +76,8 @@ TEST_F(MixesCommand, SaysWhatIsWrong) {
         {{"render", "room.xml", "--set", "small-step.sgima=1"}, "--set: unknown key 'small-step.sgima'; did you mean"},
         {{"render", "room.xml", "--set", "small-step.sigma=0.1"}, "it needs small-step.kernel=gaussian"},
         {{"render", "room.xml", "--set", "small-step.s1=0.5"}, "small-step: s1 = 0.5 is above s2 = 0.015625"},
-        {{"render", "room.xml", "--set", "large-step.weight=0"}, "no strategy of positive weight reaches every path"},
+        {{"render", "room.xml", "--mix", "mmlt", "--set", "large-step.weight=0"},
+         "no strategy of positive weight reaches every path"},
         {{"render", "room.xml", "--set", "walk-steps=3"},
          "--set: walk-steps has no effect here; it needs rectification=walk-on"},
         {{"render", "room.xml", "--set", "lengths.per-chain=fixed", "--chains", "2"},

@@ -40,7 +40,9 @@ TEST_P(RenderCommandIntegrator, WritesImagesAndReport) {
     const std::string integrator = GetParam();
     const Finished done = run(quick_render("room.xml", {"--integrator", integrator, "-o", "a.exr", "-o", "a.png"}));
     ASSERT_EQ(done.exit_code, 0) << done.err;
-    EXPECT_THAT(files(), ElementsAre("a.exr", "a.json", "a.png", "room.xml"));
+    std::vector<std::string> expected = {"a.exr", "a.json", "a.png", "room.xml"};
+    if (integrator == "mmlt") expected.insert(expected.begin() + 3, "a.toml");  // the mix that was found
+    EXPECT_EQ(files(), expected);
     EXPECT_THAT(done.out, AllOf(HasSubstr("wrote a.exr"), HasSubstr("wrote a.png"), HasSubstr("wrote a.json")));
 
     for (const char* name : {"a.exr", "a.png"}) {
@@ -137,7 +139,7 @@ TEST_F(RenderCommand, SameSeedSameBitsWithAnyNumberOfThreads) {
             (*report)["settings"].erase("threads");
             for (const char* key : {"seconds_reading", "seconds_building"}) (*report)["scene"].erase(key);
             for (const char* key : {"mutations_per_second", "rays_per_second", "seconds_bootstrap", "seconds_render",
-                                    "cpu_seconds", "threads", "peak_memory_bytes"})
+                                    "cpu_seconds", "threads", "peak_memory_bytes", "tuning"})
                 (*report)["statistics"].erase(key);
         }
         EXPECT_EQ(a, b);
@@ -158,6 +160,22 @@ TEST_F(RenderCommand, DefinesChangeTheScene) {
     // The same random numbers and a light four times as strong; floats round.
     EXPECT_NEAR(mean(image("b.exr")) / mean(image("a.exr")), 4, 1e-3);
     EXPECT_EQ(json("b.json")["scene"]["defines"]["light"], "20");
+}
+
+// Without --mix, one is found, and written to a file that makes the same image again.
+TEST_F(RenderCommand, FindsAMixAndWritesIt) {
+    const Finished done = run({"render", "room.xml", "-o", "a.exr", "-n", "200", "--bootstrap", "4096", "-v"});
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(done.out, AllOf(HasSubstr("mix: "), HasSubstr("that raced for"), HasSubstr("wrote a.toml")));
+    const nlohmann::json report = json("a.json");
+    const nlohmann::json& tuning = report["statistics"]["tuning"];
+    EXPECT_GE(tuning["contenders"].size(), 4u);
+    EXPECT_GT(tuning["contenders"][0]["efficiency"], 0);
+    EXPECT_THAT(report["settings"]["mix"].get<std::string>(), HasSubstr("tuning = \"off\""));
+    ASSERT_EQ(run({"render", "room.xml", "-o", "b.exr", "-n", "200", "--mix", "a.toml"}).exit_code, 0);
+    EXPECT_EQ(image("a.exr").rgb, image("b.exr").rgb);
+    ASSERT_EQ(run({"render", "--like", "a.exr", "-o", "c.exr"}).exit_code, 0);
+    EXPECT_EQ(image("a.exr").rgb, image("c.exr").rgb);
 }
 
 TEST_F(RenderCommand, TimedRunEndsInTime) {

@@ -69,8 +69,8 @@ TEST_F(Trust, ARareStrongPathThatTheMixCannotReachInTimeIsFound) {
     int wrong = 0, said = 0;
     constexpr int runs = 12;
     for (int seed = 1; seed <= runs; ++seed) {
-        const Finished done = run({"render", "lantern.xml", "-o", "a.exr", "-n", "1000", "--bootstrap", "16384",
-                                   "--set", "large-step.weight=0.02", "--seed", std::to_string(seed), "-q"});
+        const Finished done = run({"render", "lantern.xml", "--mix", "mmlt", "-o", "a.exr", "-n", "1000", "--bootstrap",
+                                   "16384", "--set", "large-step.weight=0.02", "--seed", std::to_string(seed), "-q"});
         ASSERT_EQ(done.exit_code, 0) << done.err;
         wrong += std::abs(mean_luminance("a.json") / truth - 1) > 0.1;
         const bool warned = done.err.find("brightness rests on few paths") != std::string::npos ||
@@ -85,8 +85,8 @@ TEST_F(Trust, ARareStrongPathThatTheMixCannotReachInTimeIsFound) {
 TEST_F(Trust, HealthyRendersAreNotWarnedAbout) {
     for (const std::string mutations : {"16", "300", "3000"})
         for (int seed = 1; seed <= 4; ++seed) {
-            const Finished done = run({"render", "lantern.xml", "-o", "a.exr", "-Dstrength=0", "-n", mutations,
-                                       "--seed", std::to_string(seed), "-q"});
+            const Finished done = run({"render", "lantern.xml", "--mix", "mmlt", "-o", "a.exr", "-Dstrength=0", "-n",
+                                       mutations, "--seed", std::to_string(seed), "-q"});
             EXPECT_EQ(done.exit_code, 0);
             EXPECT_EQ(done.err, "") << mutations << " mutations, seed " << seed;
             EXPECT_THAT(json("a.json")["warnings"], IsEmpty());
@@ -94,8 +94,8 @@ TEST_F(Trust, HealthyRendersAreNotWarnedAbout) {
 }
 
 TEST_F(Trust, ErrorsAreInTheSummaryAndTheReport) {
-    const Finished done =
-        run({"render", "room.xml", "-o", "a.exr", "-n", "40", "--chains", "64", "--bootstrap", "4096", "-v"});
+    const Finished done = run({"render", "room.xml", "--mix", "mmlt", "-o", "a.exr", "-n", "40", "--chains", "64",
+                               "--bootstrap", "4096", "-v"});
     EXPECT_THAT(done.out, HasSubstr("effective samples"));
     EXPECT_THAT(done.out, HasSubstr("effective paths"));
     const nlohmann::json statistics = json("a.json")["statistics"], errors = statistics["errors"];

@@ -37,4 +37,6 @@ for scene in cornell-box keyhole-room glossy-room; do
 done
 "$keyhole" sweep ../scenes/cornell-box.xml --vary small-step.s2=0.002..0.2 --steps 3 "${common[@]}" \
     -o "$folder/comparisons/sweep"
+"$keyhole" tradeoff ../scenes/three-planes.xml --mix fused-geo --knobs cones,max-length "${common[@]}" \
+    -o "$folder/comparisons/tradeoff"
 CHROMIUM=$CHROMIUM PAGES=$folder COMPARISONS=$folder/comparisons node --test test/page.test.mjs test/comparison.test.mjs

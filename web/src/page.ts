@@ -3,6 +3,7 @@ import {convergence_section, sweep_section} from "./charts";
 import {html, section} from "./dom";
 import {number_text, seconds_text} from "./format";
 import {is_number, read_page_data, type Results} from "./results";
+import {tradeoff_section} from "./tradeoff";
 import {metrics_section, strategies_section, time_section} from "./tables";
 import {viewer_section} from "./viewer_controls";
 
@@ -22,7 +23,7 @@ function header(results: Results): HTMLElement {
         budget_text(results),
         is_number(threads) && `${threads} thread${threads === 1 ? "" : "s"}`,
     ].filter(Boolean);
-    return html("header", {}, html("p", {class: "kind"}, entries.some((e) => e.parameter) ? "Keyhole sweep" : "Keyhole comparison"),
+    return html("header", {}, html("p", {class: "kind"}, results.tradeoff ? "Keyhole trade-off" : entries.some((e) => e.parameter) ? "Keyhole sweep" : "Keyhole comparison"),
                 html("h1", {}, scene.name ?? scene.file ?? "Unnamed scene"), html("p", {class: "facts"}, facts.join("  ·  ")));
 }
 
@@ -57,5 +58,6 @@ function origin_section(results: Results): HTMLElement {
 const data = read_page_data(), {results} = data;
 document.title = `${results.scene?.name ?? results.scene?.file ?? "Scene"} – Keyhole`;
 document.getElementById("page")!.replaceChildren(...[header(results), warnings(results), viewer_section(data),
+    tradeoff_section(results),
     convergence_section(results), sweep_section(results), metrics_section(results), strategies_section(results),
     time_section(results), mixes_section(results), origin_section(results)].filter((part) => part !== null));

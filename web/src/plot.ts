@@ -7,13 +7,14 @@ import {is_number, type Estimate} from "./results";
 export interface Series {
     name: string;
     colour: number;  // index of the palette
-    points: {x: number; y: Estimate}[];
+    points: {x: number; y: Estimate; label?: string}[];
 }
 
 export interface PlotOptions {
     x_label: string;
     y_label: string;
     log_x: boolean;
+    joined?: boolean;  // by a line, unless false
     level?: {y: number; label: string} | undefined;  // a horizontal line
 }
 
@@ -77,11 +78,11 @@ function draw_axes(x: Scale, y: Scale, width: number, height: number, options: P
 }
 
 // A point whose estimate is not positive has no place on a logarithmic axis: only the part of its interval that has.
-function draw_series(series: Series, x: Scale, y: Scale, bottom: number): SVGGElement {
+function draw_series(series: Series, x: Scale, y: Scale, bottom: number, joined: boolean): SVGGElement {
     const g = svg("g", {class: "series", style: `--colour:var(--c${series.colour % 12})`});
     const placed = series.points.filter((point) => is_number(point.y.mean) && point.y.mean > 0);
     const line = placed.map((point) => `${x(point.x).toFixed(1)} ${y(point.y.mean!).toFixed(1)}`).join("L");
-    if (placed.length > 1) g.append(svg("path", {d: `M${line}`, class: "line"}));
+    if (joined && placed.length > 1) g.append(svg("path", {d: `M${line}`, class: "line"}));
     for (const point of series.points) {
         const {low, high, mean} = point.y, at = x(point.x);
         if (is_number(low) && is_number(high) && high > 0) {
@@ -90,7 +91,7 @@ function draw_series(series: Series, x: Scale, y: Scale, bottom: number): SVGGEl
         }
         if (!is_number(mean) || mean <= 0) continue;
         const shape = marker(series.colour, at, y(mean));
-        shape.append(svg("title", {}, `${series.name}, ${number_text(point.x)}: ${estimate_text(point.y)}`));
+        shape.append(svg("title", {}, `${series.name}, ${point.label ?? number_text(point.x)}: ${estimate_text(point.y)}`));
         g.append(shape);
     }
     return g;
@@ -118,6 +119,7 @@ export function plot(all: Series[], width: number, height: number, options: Plot
         root.append(svg("path", {d: `M${margin.left} ${at}H${width - margin.right}`, class: "level"}),
                     svg("text", {x: width - margin.right - 4, y: at - 5, "text-anchor": "end", class: "level"}, options.level.label));
     }
-    root.append(...all.map((series) => draw_series({...series, points: series.points.filter((p) => points.includes(p))}, x, y, bottom)));
+    root.append(...all.map((series) => draw_series({...series, points: series.points.filter((p) => points.includes(p))}, x, y, bottom,
+        options.joined ?? true)));
     return root;
 }

@@ -32,6 +32,7 @@ export interface Entry {
     description?: string;
     mix?: string;
     parameter?: {name: string; value: number};
+    knob?: {name: string; value: string};
     runs?: number;
     metrics?: Record<string, Estimate>;
     split?: {variance?: Estimate; squared_bias?: Estimate};
@@ -41,6 +42,24 @@ export interface Entry {
     time_split?: Record<string, number>;
     speed_up?: Estimate;
     warnings?: string[];
+}
+
+// An entry as a setting of a knob of keyhole tradeoff.
+export interface Setting {
+    entry: string;
+    value: string;
+    microseconds_per_mutation: number;
+    relmse?: Estimate;
+    variance?: Estimate;
+    squared_bias?: Estimate;
+    efficiency?: Estimate;
+    speed_up?: Estimate;
+}
+
+export interface Knob {
+    knob: string;
+    conclusion: string;
+    settings: Setting[];
 }
 
 export interface Reference {
@@ -64,6 +83,7 @@ export interface Results {
     created?: string;
     reference?: Reference;
     entries?: Entry[];
+    tradeoff?: Knob[];
     warnings?: string[];
 }
 

@@ -1,5 +1,5 @@
-// What `keyhole compare` and `keyhole sweep` write, in a real browser. Needs CHROMIUM and COMPARISONS, a folder with the
-// folders of comparisons of mmlt, path and bdpt and one sweep, "sweep".
+// What `keyhole compare`, `keyhole sweep` and `keyhole tradeoff` write, in a real browser. Needs CHROMIUM and COMPARISONS, a
+// folder with the folders of comparisons of mmlt, path and bdpt, one sweep, "sweep", and one trade-off, "tradeoff".
 import assert from "node:assert/strict";
 import {readFileSync, readdirSync} from "node:fs";
 import {join} from "node:path";
@@ -15,7 +15,7 @@ for (const name of readdirSync(folder)) {
 
     test(`${name}: the results follow docs/results.schema.json`, () => {
         assert.ok(validate(results), JSON.stringify(validate.errors, null, 1));
-        if (name !== "sweep") assert.deepEqual(names, ["mmlt", "path", "bdpt"]);
+        if (!["sweep", "tradeoff"].includes(name)) assert.deepEqual(names, ["mmlt", "path", "bdpt"]);
         for (const entry of results.entries) {
             assert.equal(entry.runs, results.runs);
             assert.ok(entry.metrics.relmse.low < entry.metrics.relmse.high);
@@ -26,13 +26,15 @@ for (const name of readdirSync(folder)) {
     test(`${name}: the page shows every entry and the reference`, () => open_page(join(folder, name, "index.html"), {}, async (page) => {
         const viewer = page.locator("#viewer[data-ready=true]");
         await viewer.waitFor();
-        for (const [i, shown] of ["reference", ...names].entries()) {
+        for (const [i, shown] of ["reference", ...names.slice(0, 9)].entries()) {
             await page.keyboard.press(String(i));
             await page.waitForFunction((wanted) => {
                 const data = document.getElementById("viewer").dataset;
                 return data.ready === "true" && data.shown === wanted;
             }, shown, {timeout: 5000});
         }
+        assert.equal(await page.locator("#conclusions li").count(), name === "tradeoff" ? 2 : 0);
+        assert.equal(await page.locator("#tradeoff-plot svg[role=img]").count(), name === "tradeoff" ? 1 : 0);
         await page.screenshot({path: join(folder, name, "page.png"), fullPage: true});
     }));
 }

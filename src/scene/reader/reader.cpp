@@ -134,6 +134,7 @@ LoadedScene read_scene(const std::string& filename, const ReaderOptions& options
     build_elements(context, options);
     note_unreferenced(context);
     context.report_textures();
+    context.builder.set_robust(options.robust);
     context.builder.set_content_hash(hash_of(context, options));
 
     LoadedScene loaded;
