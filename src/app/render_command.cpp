@@ -46,16 +46,10 @@ void print_strategies(const RenderStatistics& statistics) {
     }
 }
 
-// What the race was about and how much better the winner was.
 void print_tuning(const TuningStatistics& t, bool verbose) {
-    const auto mmlt =
-        std::find_if(t.contenders.begin(), t.contenders.end(), [](const auto& c) { return c.name == "mmlt"; });
-    const std::string gain = mmlt == t.contenders.end() || t.winner == "mmlt"
-                                 ? ""
-                                 : fmt::format("; {:.2g} times as efficient as mmlt in the race",
-                                               t.contenders.front().efficiency() / mmlt->efficiency());
-    fmt::print("mix: {}, of {} that raced for {} (CPU){}\n", t.winner, t.contenders.size(),
-               format_duration(t.cpu_seconds), gain);
+    fmt::print("mix: {}, {} {} that raced for {} (CPU)\n", t.winner,
+               t.clear ? "the best of" : "with every move, as there was no clear winner among", t.contenders.size(),
+               format_duration(t.cpu_seconds));
     if (!verbose) return;
     for (const auto& c : t.contenders)
         fmt::print("  {:<48} {:>8} mutations in {}, error {:.3g}, efficiency {:.3g}\n", c.name,

@@ -102,6 +102,7 @@ Json film_json(const FilmSettings& film) {
 
 Json tuning_json(const TuningStatistics& t) {
     Json json = {{"winner", t.winner},
+                 {"clear", t.clear},
                  {"mutations", t.mutations},
                  {"cpu_seconds", t.cpu_seconds},
                  {"contenders", Json::array()}};

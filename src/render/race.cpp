@@ -13,12 +13,16 @@ namespace {
 
 // Of the render; of long ones less.
 constexpr double share_of_short = 0.1, share_of_long = 0.01;
-constexpr double share_of_sets = 0.6;      // of the race; the rest is for the winner's weights and sizes
-constexpr int chains_of_contender = 64;    // few, so that each is long enough to show how it mixes
-constexpr double fewest_mutations = 8192;  // of a contender in its first round, for a comparison to mean something
-constexpr double step = 3;                 // by which weights and sizes are changed
-constexpr double worth_a_change = 1.1;     // more efficient than without; less may be chance
+constexpr double share_of_sets = 0.6;        // of the race; the rest is for the winner's weights and sizes
+constexpr int chains_of_contender = 64;      // few, so that each is long enough to show how it mixes
+constexpr double fewest_mutations = 8192;    // of a contender in its first round, for a comparison to mean something
+constexpr double step = 3;                   // by which weights and sizes are changed
+constexpr double worth_a_change = 1.1;       // more efficient than without; less may be chance
+constexpr double largest_known_error = 0.5;  // of blocks, relative; what is seen with a larger one is mostly chance
 constexpr std::uint64_t mutations_of_pass = 16;  // of each chain
+
+// What a race without a clear result ends with: every move that there is, so that none that matters is missing.
+const std::string fallback = "fused-all";
 
 // Mixes whose strategies compete, the simplest first.
 const std::vector<std::string> sets = {"mmlt",  "rjmlt",     "mlt",          "geomlt",   "portal",
@@ -124,11 +128,23 @@ class Contender {
         return error * (length.mutations ? static_cast<double>(run_->rays()) + mutations_ : seconds_);
     }
     Variant variant() const { return {name_, settings_.mix}; }
+    // Without the strategies that no state has suited so far: the scene does not require them.
+    Variant required() const {
+        Variant v = variant();
+        const Diagnostics diagnostics = run_->diagnostics();
+        Mix mix = v.mix;
+        mix.strategies.clear();
+        for (std::size_t i = 0; i < v.mix.strategies.size(); ++i)
+            if (diagnostics.strategies[i].proposals > 0) mix.strategies.push_back(v.mix.strategies[i]);
+        if (!contradiction(mix)) v.mix = std::move(mix);
+        return v;
+    }
 
     ReplicateRecord record() const { return run_->record(); }
     double mutations() const { return mutations_; }
     double seconds() const { return seconds_; }
     double error = 0;  // mean squared relative error of the blocks
+    bool known() const { return error < largest_known_error * largest_known_error; }
 
   private:
     std::string name_;
@@ -173,8 +189,9 @@ class Race {
           length_(length),
           stop_(stop) {}
 
-    // The variants race, with a share of the length; the best is first, the others follow as they dropped out.
-    std::vector<std::unique_ptr<Contender>> run(std::vector<Variant> variants, double share) {
+    // The variants race, with a share of the length; the best is first, the others follow as they dropped out. The one
+    // called `stays` is there until the end.
+    std::vector<std::unique_ptr<Contender>> run(std::vector<Variant> variants, double share, const std::string& stays) {
         std::vector<std::unique_ptr<Contender>> field, out;
         for (Variant& v : variants)
             field.push_back(std::make_unique<Contender>(std::move(v), scene_, settings_, layout_, techniques_, seeds_));
@@ -191,10 +208,15 @@ class Race {
             }
             used_ = begin + round * of_round;
             rank(field);
+            if (field.size() <= 2) break;
             const std::size_t kept = (field.size() + 1) / 2;
-            for (; field.size() > kept; field.pop_back()) out.insert(out.begin(), std::move(field.back()));
+            for (std::size_t i = field.size(); i-- > 0 && field.size() > kept;)
+                if (field[i]->variant().name != stays) {
+                    out.insert(out.begin(), std::move(field[i]));
+                    field.erase(field.begin() + static_cast<std::ptrdiff_t>(i));
+                }
         }
-        out.insert(out.begin(), std::move(field.front()));
+        for (std::size_t i = field.size(); i-- > 0;) out.insert(out.begin(), std::move(field[i]));
         return out;
     }
     bool stopped() const { return stopped_; }
@@ -251,6 +273,18 @@ void report(const std::vector<std::unique_ptr<Contender>>& field, TuningStatisti
     }
 }
 
+// The first of the field, if it is known to be better than the one of that name, where that is there.
+const Contender& better(const std::vector<std::unique_ptr<Contender>>& field, const std::string& than,
+                        const RaceLength& length) {
+    const Contender& first = *field.front();
+    const auto found =
+        std::find_if(field.begin(), field.end(), [&](const auto& c) { return c->variant().name == than; });
+    if (found == field.end()) return first;
+    const Contender& other = **found;
+    const bool is_better = first.known() && other.known() && first.cost(length) * worth_a_change < other.cost(length);
+    return is_better ? first : other;
+}
+
 }  // namespace
 
 RaceLength RaceLength::of(const RenderSettings& s, int threads) {
@@ -268,24 +302,24 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const Bootstrap seeds = part_of(bootstrap, chains_of_contender);
     Race race(scene, settings, layout, techniques, seeds, length, stop);
     RaceResult result;
-    const auto field = race.run(sets_of(settings.mix, scene), share_of_sets);
+    const auto field = race.run(sets_of(settings.mix, scene), share_of_sets, fallback);
     report(field, result.statistics);
-    Variant best = field[0]->variant();
+    const Contender& winner = better(field, fallback, length);
+    Variant best = winner.required();
 
     std::vector<Variant> variants = neighbours_of(best);
     const double each =
         (1 - share_of_sets) * length.amount /
         (std::ceil(std::log2(static_cast<double>(variants.size() + 1))) * static_cast<double>(variants.size() + 1));
-    const double mutations = length.mutations ? each : each * field[0]->mutations() / field[0]->seconds();
-    if (!race.stopped() && mutations >= fewest_mutations) {
+    const double mutations = length.mutations ? each : each * winner.mutations() / winner.seconds();
+    if (!race.stopped() && mutations >= fewest_mutations && winner.known()) {
         variants.insert(variants.begin(), best);
-        const auto tuned = race.run(std::move(variants), 1 - share_of_sets);
+        const auto tuned = race.run(std::move(variants), 1 - share_of_sets, best.name);
         report(tuned, result.statistics);
-        const auto unchanged =
-            std::find_if(tuned.begin(), tuned.end(), [&](const auto& c) { return c->variant().name == best.name; });
-        if (tuned[0]->cost(length) * worth_a_change < (*unchanged)->cost(length)) best = tuned[0]->variant();
+        best = better(tuned, best.name, length).variant();
     }
     result.statistics.winner = best.name;
+    result.statistics.clear = winner.known();
     result.mix = std::move(best.mix);
     return result;
 }
