@@ -66,6 +66,10 @@ std::vector<Variant> sets_of(const Mix& pool, const Scene& scene) {
                                        [&](const Variant& v) { return v.mix.strategies == mix.strategies; });
         if (!mix.strategies.empty() && !known) variants.push_back({name, std::move(mix)});
     }
+    if (variants.empty()) {  // strategies that no set has
+        variants.push_back({pool.name, pool});
+        variants.front().mix.tuning = Mix::Tuning::off;
+    }
     return variants;
 }
 
@@ -153,25 +157,24 @@ class Contender {
     std::unique_ptr<ChainRun> run_;
 };
 
-// Per mutation, of one replicate; b of groups as the bootstrap knows it. NaN-free: a replicate without chains is left
-// out.
 using Blocks = std::array<double, BlockGrid::count>;
+
+// The light of the blocks as each replicate has it, up to a factor. The b of a group is that of all replicates.
 std::vector<Blocks> block_means(const ReplicateRecord& record) {
     std::vector<Blocks> means;
     for (std::size_t r = 0; r < record.blocks[0].size(); ++r) {
         Blocks sum{};
-        double mutations = 0;
+        bool has_chains = false;
         for (std::size_t g = 0; g < record.blocks.size(); ++g) {
-            double of_group = 0;
-            for (const double n : record.mutations[g]) of_group += n;
+            const double mutations = record.mutations[g][r];
+            if (!(mutations > 0)) continue;
+            has_chains = true;
             RunningMean b;
             for (const RunningMean& replicate : record.b[g]) b.merge(replicate);
-            if (!(record.mutations[g][r] > 0)) continue;
-            mutations += record.mutations[g][r];
             for (int j = 0; j < BlockGrid::count; ++j)
-                sum[static_cast<std::size_t>(j)] += b.mean() * record.blocks[g][r][j] / record.mutations[g][r];
+                sum[static_cast<std::size_t>(j)] += b.mean() * record.blocks[g][r][j] / mutations;
         }
-        if (mutations > 0) means.push_back(sum);
+        if (has_chains) means.push_back(sum);
     }
     return means;
 }
@@ -302,7 +305,13 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const Bootstrap seeds = part_of(bootstrap, chains_of_contender);
     Race race(scene, settings, layout, techniques, seeds, length, stop);
     RaceResult result;
-    const auto field = race.run(sets_of(settings.mix, scene), share_of_sets, fallback);
+    std::vector<Variant> all = sets_of(settings.mix, scene);
+    if (all.size() == 1) {
+        result.statistics.winner = all.front().name;
+        result.mix = std::move(all.front().mix);
+        return result;
+    }
+    const auto field = race.run(std::move(all), share_of_sets, fallback);
     report(field, result.statistics);
     const Contender& winner = better(field, fallback, length);
     Variant best = winner.required();
@@ -312,7 +321,7 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
         (1 - share_of_sets) * length.amount /
         (std::ceil(std::log2(static_cast<double>(variants.size() + 1))) * static_cast<double>(variants.size() + 1));
     const double mutations = length.mutations ? each : each * winner.mutations() / winner.seconds();
-    if (!race.stopped() && mutations >= fewest_mutations && winner.known()) {
+    if (!race.stopped() && !variants.empty() && mutations >= fewest_mutations && winner.known()) {
         variants.insert(variants.begin(), best);
         const auto tuned = race.run(std::move(variants), 1 - share_of_sets, best.name);
         report(tuned, result.statistics);

@@ -65,6 +65,17 @@ TEST(Race, KeepsToThePool) {
         }
 }
 
+// A pool that no set fits is what it is.
+TEST(Race, NeedsSetsToRace) {
+    const auto scene = own_scene("cornell-box", 16, 16);
+    RenderSettings settings = automatic(20);
+    const Mix own = parse_mix("tuning = \"race\"\n[[strategy]]\ntype = \"large-step\"\nweight = 1\n", "own");
+    settings.mix.strategies = own.strategies;
+    const RenderResult result = render(*scene, settings);
+    EXPECT_TRUE(result.statistics.tuning->contenders.empty());
+    EXPECT_EQ(result.statistics.mix.strategies, own.strategies);
+}
+
 // Small steps that move nothing lose against perturbations that do.
 TEST(Race, IsWonByMovesThatMove) {
     const auto scene = own_scene("four-holes", 32, 32);
