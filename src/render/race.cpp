@@ -17,7 +17,8 @@ constexpr double share_of_sets = 0.6;        // of the race; the rest is for the
 constexpr int chains_of_contender = 64;      // few, so that each is long enough to show how it mixes
 constexpr double fewest_mutations = 8192;    // of a contender in its first round, for a comparison to mean something
 constexpr double step = 3;                   // by which weights and sizes are changed
-constexpr double worth_a_change = 1.1;       // more efficient than without; less may be chance
+constexpr double worth_a_set = 1.1;          // more efficient than the fallback; less may be chance
+constexpr double worth_a_change = 1.3;       // the same of a change of the winner: there are many to choose from
 constexpr double largest_known_error = 0.5;  // of blocks, relative; what is seen with a larger one is mostly chance
 constexpr std::uint64_t mutations_of_pass = 16;  // of each chain
 
@@ -276,15 +277,15 @@ void report(const std::vector<std::unique_ptr<Contender>>& field, TuningStatisti
     }
 }
 
-// The first of the field, if it is known to be better than the one of that name, where that is there.
-const Contender& better(const std::vector<std::unique_ptr<Contender>>& field, const std::string& than,
+// The first of the field, if it is known to be better by the factor than the one of that name, where that is there.
+const Contender& better(const std::vector<std::unique_ptr<Contender>>& field, const std::string& than, double factor,
                         const RaceLength& length) {
     const Contender& first = *field.front();
     const auto found =
         std::find_if(field.begin(), field.end(), [&](const auto& c) { return c->variant().name == than; });
     if (found == field.end()) return first;
     const Contender& other = **found;
-    const bool is_better = first.known() && other.known() && first.cost(length) * worth_a_change < other.cost(length);
+    const bool is_better = first.known() && other.known() && first.cost(length) * factor < other.cost(length);
     return is_better ? first : other;
 }
 
@@ -313,7 +314,7 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     }
     const auto field = race.run(std::move(all), share_of_sets, fallback);
     report(field, result.statistics);
-    const Contender& winner = better(field, fallback, length);
+    const Contender& winner = better(field, fallback, worth_a_set, length);
     Variant best = winner.required();
 
     std::vector<Variant> variants = neighbours_of(best);
@@ -325,7 +326,7 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
         variants.insert(variants.begin(), best);
         const auto tuned = race.run(std::move(variants), 1 - share_of_sets, best.name);
         report(tuned, result.statistics);
-        best = better(tuned, best.name, length).variant();
+        best = better(tuned, best.name, worth_a_change, length).variant();
     }
     result.statistics.winner = best.name;
     result.statistics.clear = winner.known();
