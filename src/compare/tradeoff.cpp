@@ -50,19 +50,22 @@ std::string interval(const json& e) {
                        number_of(e, "high", 0));
 }
 
+// A biased setting is not called better: more time would not make it right.
 std::string conclusion(const std::string& base, const json& settings) {
     const json* best = nullptr;
     bool all_worse = true;
     std::string biased;
     for (const json& s : settings) {
-        if (const double share = bias_share(s); share > 0.1 && share > bias_share(settings[0]) + 0.1)
+        if (!s.contains("speed_up")) continue;
+        if (const double share = bias_share(s); share > 0.1 && share > bias_share(settings[0]) + 0.1) {
             biased +=
                 fmt::format("; {} is biased: {:.0f}% of its squared error", s["value"].get<std::string>(), 100 * share);
-        if (!s.contains("speed_up")) continue;
+            continue;
+        }
         all_worse = all_worse && number_of(s["speed_up"], "high", 2) < 1;
         if (!best || number_of(s["speed_up"], "mean", 0) > number_of((*best)["speed_up"], "mean", 0)) best = &s;
     }
-    if (!best) return "not measured yet";
+    if (!best) return fmt::format("nothing to set against {}{}", base, biased);
     const std::string value = (*best)["value"], factor = interval((*best)["speed_up"]);
     if (number_of((*best)["speed_up"], "low", 0) > 1)
         return fmt::format("{} is better than {}: the same error {} times as fast{}", value, base, factor, biased);
