@@ -13,10 +13,9 @@ Mix MixOptions::apply(Mix base) const {
 Mix MixOptions::apply_found(Mix base) const {
     Mix mix = apply(std::move(base));
     if (mix.tuning != Mix::Tuning::off)
-        throw InputError({},
-                         "the mix '" + mix.name +
-                             "' is found by a race in a render; valid: a mix without tuning, such as the .toml file "
-                             "that such a render writes");
+        throw InputError({}, "the mix '" + mix.name +
+                                 "' is found by a race in a render; valid: a mix without tuning, such as the .mix.toml "
+                                 "file that such a render writes");
     return mix;
 }
 

@@ -51,7 +51,7 @@ Outputs::Outputs(std::vector<std::string> names, const std::string& scene_filena
     : images_(std::move(names)), error_image_(error_image), exposure_(exposure) {
     if (images_.empty()) images_.push_back(scene_name(scene_filename) + ".exr");
     report_ = fs::path(images_.front()).replace_extension(".json").string();
-    mix_ = fs::path(images_.front()).replace_extension(".toml").string();
+    mix_ = fs::path(images_.front()).replace_extension(".mix.toml").string();
     for (const std::string& name : images_) image_format(name);
     for (const std::string& name : images_) check_writable(name);
     check_writable(report_);

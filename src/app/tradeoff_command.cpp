@@ -160,7 +160,11 @@ struct TradeoffOptions {
     std::vector<std::string> knobs;  // empty: all
 };
 
-std::vector<ComparedEntry> make_entries(const TradeoffOptions& options, const LoadedScene& loaded, const Scene& robust,
+bool asked(const TradeoffOptions& options, const std::string& knob) {
+    return options.knobs.empty() || std::find(options.knobs.begin(), options.knobs.end(), knob) != options.knobs.end();
+}
+
+std::vector<ComparedEntry> make_entries(const TradeoffOptions& options, const LoadedScene& loaded, const Scene* robust,
                                         ComparisonPlan& plan) {
     RenderSettings settings;
     settings.mix = options.comparison.mix.apply_found(builtin_mix("fused"));
@@ -172,9 +176,7 @@ std::vector<ComparedEntry> make_entries(const TradeoffOptions& options, const Lo
     entries[0].mix = base;
     for (const Knob& knob : all_knobs(base)) {
         names.push_back(knob.name);
-        const bool asked = options.knobs.empty() ||
-                           std::find(options.knobs.begin(), options.knobs.end(), knob.name) != options.knobs.end();
-        if (!asked) continue;
+        if (!asked(options, knob.name)) continue;
         plan.knobs[knob.name] = knob.base;
         for (const KnobValue& v : knob.values) {
             ComparedEntry entry;
@@ -184,7 +186,7 @@ std::vector<ComparedEntry> make_entries(const TradeoffOptions& options, const Lo
             if (v.value == knob.base || contradiction(entry.mix)) continue;
             entry.name = knob.name + "=" + v.value;
             entry.knob = {knob.name, v.value};
-            if (v.robust) entry.scene = &robust;
+            if (v.robust) entry.scene = robust;
             entries.push_back(std::move(entry));
         }
     }
@@ -196,11 +198,14 @@ std::vector<ComparedEntry> make_entries(const TradeoffOptions& options, const Lo
 }
 
 int run(const TradeoffOptions& options) {
-    ReaderOptions reader = options.comparison.scene.reader;
-    reader.robust = true;
-    const LoadedScene robust = read_scene(options.comparison.scene.filename, reader);
+    LoadedScene robust;
+    if (asked(options, "robust")) {
+        ReaderOptions reader = options.comparison.scene.reader;
+        reader.robust = true;
+        robust = read_scene(options.comparison.scene.filename, reader);
+    }
     return run_comparison_command(options.comparison, "tradeoff", [&](const LoadedScene& loaded, ComparisonPlan& plan) {
-        return make_entries(options, loaded, *robust.scene, plan);
+        return make_entries(options, loaded, robust.scene.get(), plan);
     });
 }
 

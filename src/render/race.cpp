@@ -132,6 +132,7 @@ class Contender {
     double cost(const RaceLength& length) const {
         return error * (length.mutations ? static_cast<double>(run_->rays()) + mutations_ : seconds_);
     }
+    const std::string& name() const { return name_; }
     Variant variant() const { return {name_, settings_.mix}; }
     // Without the strategies that no state has suited so far: the scene does not require them.
     Variant required() const {
@@ -200,22 +201,14 @@ class Race {
         for (Variant& v : variants)
             field.push_back(std::make_unique<Contender>(std::move(v), scene_, settings_, layout_, techniques_, seeds_));
         const double rounds = std::max(1.0, std::ceil(std::log2(static_cast<double>(field.size()))));
-        const double of_round = share * length_.amount / rounds, begin = used_;
-        for (double round = 1; field.size() > 1 && !stopped_; ++round) {
-            const double each = of_round / static_cast<double>(field.size());
-            for (const auto& contender : field) {
-                const double until = contender->used(length_) + each;
-                do {
-                    contender->advance();
-                    stopped_ = stopped_ || stop_((used_ + contender->used(length_)) / length_.amount);
-                } while (contender->used(length_) < until && !stopped_);
-            }
-            used_ = begin + round * of_round;
+        const double of_round = share * length_.amount / rounds;
+        while (field.size() > 1 && !stopped_) {
+            for (const auto& contender : field) advance(*contender, of_round / static_cast<double>(field.size()));
             rank(field);
             if (field.size() <= 2) break;
             const std::size_t kept = (field.size() + 1) / 2;
             for (std::size_t i = field.size(); i-- > 0 && field.size() > kept;)
-                if (field[i]->variant().name != stays) {
+                if (field[i]->name() != stays) {
                     out.insert(out.begin(), std::move(field[i]));
                     field.erase(field.begin() + static_cast<std::ptrdiff_t>(i));
                 }
@@ -226,6 +219,15 @@ class Race {
     bool stopped() const { return stopped_; }
 
   private:
+    void advance(Contender& contender, double amount) {
+        const double begin = contender.used(length_), used_before = used_;
+        do {
+            contender.advance();
+            used_ = used_before + contender.used(length_) - begin;
+            stopped_ = stopped_ || stop_(used_ / length_.amount);
+        } while (used_ - used_before < amount && !stopped_);
+    }
+
     // By their errors times their time. All see the same image, so its means are those of all together.
     void rank(std::vector<std::unique_ptr<Contender>>& field) const {
         Blocks all{};
@@ -271,7 +273,7 @@ class Race {
 
 void report(const std::vector<std::unique_ptr<Contender>>& field, TuningStatistics& statistics) {
     for (const auto& c : field) {
-        statistics.contenders.push_back({c->variant().name, c->mutations(), c->seconds(), std::sqrt(c->error)});
+        statistics.contenders.push_back({c->name(), c->mutations(), c->seconds(), std::sqrt(c->error)});
         statistics.cpu_seconds += c->seconds();
         statistics.mutations += c->mutations();
     }
@@ -281,8 +283,7 @@ void report(const std::vector<std::unique_ptr<Contender>>& field, TuningStatisti
 const Contender& better(const std::vector<std::unique_ptr<Contender>>& field, const std::string& than, double factor,
                         const RaceLength& length) {
     const Contender& first = *field.front();
-    const auto found =
-        std::find_if(field.begin(), field.end(), [&](const auto& c) { return c->variant().name == than; });
+    const auto found = std::find_if(field.begin(), field.end(), [&](const auto& c) { return c->name() == than; });
     if (found == field.end()) return first;
     const Contender& other = **found;
     const bool is_better = first.known() && other.known() && first.cost(length) * factor < other.cost(length);

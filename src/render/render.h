@@ -121,7 +121,7 @@ struct TuningStatistics {
 
 struct RenderStatistics {
     std::optional<TuningStatistics> tuning;
-    Mix mix;  // as it was used, after tuning
+    Mix mix;                      // as it was used, after tuning
     std::uint64_t mutations = 0;  // or samples
     std::uint64_t rounds = 0;     // mutations of each chain, or samples of each pixel that the filter reaches
     std::uint64_t rays = 0;

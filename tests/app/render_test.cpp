@@ -41,7 +41,7 @@ TEST_P(RenderCommandIntegrator, WritesImagesAndReport) {
     const Finished done = run(quick_render("room.xml", {"--integrator", integrator, "-o", "a.exr", "-o", "a.png"}));
     ASSERT_EQ(done.exit_code, 0) << done.err;
     std::vector<std::string> expected = {"a.exr", "a.json", "a.png", "room.xml"};
-    if (integrator == "mmlt") expected.insert(expected.begin() + 3, "a.toml");  // the mix that was found
+    if (integrator == "mmlt") expected.insert(expected.begin() + 2, "a.mix.toml");  // the mix that was found
     EXPECT_EQ(files(), expected);
     EXPECT_THAT(done.out, AllOf(HasSubstr("wrote a.exr"), HasSubstr("wrote a.png"), HasSubstr("wrote a.json")));
 
@@ -166,13 +166,13 @@ TEST_F(RenderCommand, DefinesChangeTheScene) {
 TEST_F(RenderCommand, FindsAMixAndWritesIt) {
     const Finished done = run({"render", "room.xml", "-o", "a.exr", "-n", "200", "--bootstrap", "4096", "-v"});
     ASSERT_EQ(done.exit_code, 0) << done.err;
-    EXPECT_THAT(done.out, AllOf(HasSubstr("mix: "), HasSubstr("that raced for"), HasSubstr("wrote a.toml")));
+    EXPECT_THAT(done.out, AllOf(HasSubstr("mix: "), HasSubstr("that raced for"), HasSubstr("wrote a.mix.toml")));
     const nlohmann::json report = json("a.json");
     const nlohmann::json& tuning = report["statistics"]["tuning"];
     EXPECT_GE(tuning["contenders"].size(), 4u);
     EXPECT_GT(tuning["contenders"][0]["efficiency"], 0);
     EXPECT_THAT(report["settings"]["mix"].get<std::string>(), HasSubstr("tuning = \"off\""));
-    ASSERT_EQ(run({"render", "room.xml", "-o", "b.exr", "-n", "200", "--mix", "a.toml"}).exit_code, 0);
+    ASSERT_EQ(run({"render", "room.xml", "-o", "b.exr", "-n", "200", "--mix", "a.mix.toml"}).exit_code, 0);
     EXPECT_EQ(image("a.exr").rgb, image("b.exr").rgb);
     ASSERT_EQ(run({"render", "--like", "a.exr", "-o", "c.exr"}).exit_code, 0);
     EXPECT_EQ(image("a.exr").rgb, image("c.exr").rgb);
