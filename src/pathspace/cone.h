@@ -63,8 +63,4 @@ class ConeFinder {
     std::vector<Entry> queue_;
 };
 
-// The smallest angle from the axis under which the apex sees what lies of a triangle between the cone's two planes;
-// infinite if nothing does. Parts that the axis itself meets do not count as angle zero.
-double least_angle(const ConeEdge& edge, const ConeSettings& settings, const BoxHierarchy::Triangle& triangle);
-
 }  // namespace keyhole

@@ -7,6 +7,7 @@
 
 #include "base/process.h"
 #include "render/chain_run.h"
+#include "strategies/mix_variants.h"
 
 namespace keyhole {
 namespace {
@@ -16,7 +17,6 @@ constexpr double share_of_short = 0.1, share_of_long = 0.01;
 constexpr double share_of_sets = 0.6;        // of the race; the rest is for the winner's weights and sizes
 constexpr int chains_of_contender = 64;      // few, so that each is long enough to show how it mixes
 constexpr double fewest_mutations = 8192;    // of a contender in its first round, for a comparison to mean something
-constexpr double step = 3;                   // by which weights and sizes are changed
 constexpr double worth_a_set = 1.1;          // more efficient than the fallback; less may be chance
 constexpr double worth_a_change = 1.3;       // the same of a change of the winner: there are many to choose from
 constexpr double largest_known_error = 0.5;  // of blocks, relative; what is seen with a larger one is mostly chance
@@ -24,73 +24,6 @@ constexpr std::uint64_t mutations_of_pass = 16;  // of each chain
 
 // What a race without a clear result ends with: every move that there is, so that none that matters is missing.
 const std::string fallback = "fused-all";
-
-// Mixes whose strategies compete, the simplest first.
-const std::vector<std::string> sets = {"mmlt",  "rjmlt",     "mlt",          "geomlt",   "portal",
-                                       "fused", "fused-geo", "fused-portal", "fused-all"};
-
-bool applies(const MixStrategy& s, const Scene& scene, const Mix& mix) {
-    return s.weight > 0 && s.info->hindrance(scene, mix.lengths).empty();
-}
-
-// The pool with the strategies of the set that are in it and apply to the scene, at the set's weights times the pool's,
-// with the pool's parameters. Without strategies where the set has one that the pool leaves out.
-Mix from_set(const Mix& pool, const Mix& set, const Scene& scene) {
-    Mix mix = pool;
-    mix.tuning = Mix::Tuning::off;
-    mix.strategies.clear();
-    for (const MixStrategy& s : set.strategies) {
-        if (!applies(s, scene, pool)) continue;
-        const auto own = std::find_if(pool.strategies.begin(), pool.strategies.end(),
-                                      [&](const MixStrategy& p) { return p.info == s.info && p.weight > 0; });
-        if (own == pool.strategies.end()) {
-            mix.strategies.clear();
-            return mix;
-        }
-        mix.strategies.push_back(*own);
-        mix.strategies.back().weight *= s.weight;
-    }
-    if (contradiction(mix)) mix.strategies.clear();
-    return mix;
-}
-
-struct Variant {
-    std::string name;
-    Mix mix;
-};
-
-std::vector<Variant> sets_of(const Mix& pool, const Scene& scene) {
-    std::vector<Variant> variants;
-    for (const std::string& name : sets) {
-        Mix mix = from_set(pool, builtin_mix(name), scene);
-        const bool known = std::any_of(variants.begin(), variants.end(),
-                                       [&](const Variant& v) { return v.mix.strategies == mix.strategies; });
-        if (!mix.strategies.empty() && !known) variants.push_back({name, std::move(mix)});
-    }
-    if (variants.empty()) {  // strategies that no set has
-        variants.push_back({pool.name, pool});
-        variants.front().mix.tuning = Mix::Tuning::off;
-    }
-    return variants;
-}
-
-// One weight or the sizes of one strategy changed.
-std::vector<Variant> neighbours_of(const Variant& best) {
-    std::vector<Variant> variants;
-    for (std::size_t i = 0; i < best.mix.strategies.size(); ++i)
-        for (const double factor : {step, 1 / step}) {
-            const auto name = [&](const char* what) {
-                return fmt::format("{}, {} of {} {}{}", best.name, what, best.mix.strategies[i].label,
-                                   factor > 1 ? "times " : "over ", step);
-            };
-            Variant weight{name("weight"), best.mix};
-            weight.mix.strategies[i].weight *= factor;
-            if (best.mix.strategies.size() > 1) variants.push_back(std::move(weight));
-            Variant size{name("steps"), best.mix};
-            if (scale_steps(size.mix.strategies[i], factor)) variants.push_back(std::move(size));
-        }
-    return variants;
-}
 
 // The chains of a part of the seeds, in order: they are in proportion to the target as all are.
 Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
@@ -109,7 +42,7 @@ Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
 
 class Contender {
   public:
-    Contender(Variant variant, const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
+    Contender(MixVariant variant, const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
               const TechniqueDistribution& techniques, const Bootstrap& seeds)
         : name_(std::move(variant.name)), settings_(settings) {
         settings_.mix = std::move(variant.mix);
@@ -133,10 +66,10 @@ class Contender {
         return error * (length.mutations ? static_cast<double>(run_->rays()) + mutations_ : seconds_);
     }
     const std::string& name() const { return name_; }
-    Variant variant() const { return {name_, settings_.mix}; }
+    MixVariant variant() const { return {name_, settings_.mix}; }
     // Without the strategies that no state has suited so far: the scene does not require them.
-    Variant required() const {
-        Variant v = variant();
+    MixVariant required() const {
+        MixVariant v = variant();
         const Diagnostics diagnostics = run_->diagnostics();
         Mix mix = v.mix;
         mix.strategies.clear();
@@ -196,9 +129,10 @@ class Race {
 
     // The variants race, with a share of the length; the best is first, the others follow as they dropped out. The one
     // called `stays` is there until the end.
-    std::vector<std::unique_ptr<Contender>> run(std::vector<Variant> variants, double share, const std::string& stays) {
+    std::vector<std::unique_ptr<Contender>> run(std::vector<MixVariant> variants, double share,
+                                                const std::string& stays) {
         std::vector<std::unique_ptr<Contender>> field, out;
-        for (Variant& v : variants)
+        for (MixVariant& v : variants)
             field.push_back(std::make_unique<Contender>(std::move(v), scene_, settings_, layout_, techniques_, seeds_));
         const double rounds = std::max(1.0, std::ceil(std::log2(static_cast<double>(field.size()))));
         const double of_round = share * length_.amount / rounds;
@@ -307,7 +241,7 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const Bootstrap seeds = part_of(bootstrap, chains_of_contender);
     Race race(scene, settings, layout, techniques, seeds, length, stop);
     RaceResult result;
-    std::vector<Variant> all = sets_of(settings.mix, scene);
+    std::vector<MixVariant> all = sets_of(settings.mix, scene);
     if (all.size() == 1) {
         result.statistics.winner = all.front().name;
         result.mix = std::move(all.front().mix);
@@ -316,9 +250,9 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const auto field = race.run(std::move(all), share_of_sets, fallback);
     report(field, result.statistics);
     const Contender& winner = better(field, fallback, worth_a_set, length);
-    Variant best = winner.required();
+    MixVariant best = winner.required();
 
-    std::vector<Variant> variants = neighbours_of(best);
+    std::vector<MixVariant> variants = neighbours_of(best);
     const double each =
         (1 - share_of_sets) * length.amount /
         (std::ceil(std::log2(static_cast<double>(variants.size() + 1))) * static_cast<double>(variants.size() + 1));

@@ -28,6 +28,10 @@ ConeEdge edge_between(const Vec3& a, const Vec3& b, const Vec3& normal) {
     return {a, (b - a).normalized(), (b - a).norm(), normal};
 }
 
+double least_angle(const ConeEdge& edge, const ConeSettings& settings, const Triangle& t) {
+    return std::atan(least_tangent(ConeSlab(edge, settings), edge.apex, t));
+}
+
 // By points of the triangle: from above, and close where there are many.
 double angle_by_points(const ConeEdge& edge, const ConeSettings& settings, const Triangle& t, int n) {
     double least = std::numeric_limits<double>::infinity();
