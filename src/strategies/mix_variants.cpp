@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "strategies/mix_file.h"
+
 namespace keyhole {
 namespace {
 
