@@ -1,5 +1,5 @@
 // Empty cones about edges, against brute force.
-#include "pathspace/cone.h"
+#include "pathspace/triangle_angle.h"
 
 #include <gtest/gtest.h>
 
