@@ -1,6 +1,8 @@
 // What a mutation is made of, on each of the project's own scenes: rays, charts, and whole steps of a chain.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+
 #include "own_scenes.h"
 #include "render/bootstrap.h"
 #include "render/chain_worker.h"
@@ -59,11 +61,23 @@ void evaluate_chart(benchmark::State& state, const std::string& name) {
     for (auto _ : state) benchmark::DoNotOptimize(large.draw(drawn, rng));
 }
 
-// A worker and chains of a built-in mix, as `keyhole render` has them.
+// The mix with all others that fused-all has, at weight zero.
+Mix with_unused(const std::string& name) {
+    Mix mix = builtin_mix(name);
+    for (MixStrategy s : builtin_mix("fused-all").strategies) {
+        s.weight = 0;
+        const bool known = std::any_of(mix.strategies.begin(), mix.strategies.end(),
+                                       [&](const MixStrategy& other) { return other.label == s.label; });
+        if (!known) mix.strategies.push_back(std::move(s));
+    }
+    return mix;
+}
+
+// A worker and chains of a mix, as `keyhole render` has them.
 struct Run {
-    Run(const Scene& scene, const char* mix, int chain_count) : layout(scene, max_length), techniques(every_technique) {
+    Run(const Scene& scene, const Mix& mix, int chain_count) : layout(scene, max_length), techniques(every_technique) {
         settings.mutations_per_pixel = 1;
-        settings.mix = builtin_mix(mix);
+        settings.mix = mix;
         settings.mix.lengths = {2, max_length};
         settings.mix.chain_count = chain_count;
         settings = resolve(scene, settings);
@@ -79,16 +93,16 @@ struct Run {
 };
 
 // Steps of a mixture with their splats.
-void mutate(benchmark::State& state, const std::string& name) {
+void mutate(benchmark::State& state, const std::string& name, const Mix& mix) {
     const auto scene = load(name);
-    Run run(*scene, "mmlt", 1);
+    Run run(*scene, mix, 1);
     for (auto _ : state) run.worker->advance(run.chains.front(), 1);
 }
 
 // Proposals of one strategy of the mix cmlt, from many states in equilibrium.
 void propose(benchmark::State& state, const std::string& name, const std::string& strategy) {
     const auto scene = load(name);
-    Run run(*scene, "cmlt", 1024);
+    Run run(*scene, builtin_mix("cmlt"), 1024);
     for (RunningChain& chain : run.chains) run.worker->advance(chain, 200);
     std::size_t index = 0;
     while (run.worker->mixture.strategy(index).name() != strategy) ++index;
@@ -107,7 +121,8 @@ const bool added = [] {
         benchmark::RegisterBenchmark(("intersect/" + name).c_str(), cast<false>, name);
         benchmark::RegisterBenchmark(("unoccluded/" + name).c_str(), cast<true>, name);
         benchmark::RegisterBenchmark(("chart_evaluate/" + name).c_str(), evaluate_chart, name);
-        benchmark::RegisterBenchmark(("mutation/" + name).c_str(), mutate, name);
+        benchmark::RegisterBenchmark(("mutation/" + name).c_str(), mutate, name, builtin_mix("mmlt"));
+        benchmark::RegisterBenchmark(("mutation-unused/" + name).c_str(), mutate, name, with_unused("mmlt"));
         for (const std::string strategy : {"large-step", "small-step", "chart-swap"})
             benchmark::RegisterBenchmark((strategy + "/" + name).c_str(), propose, name, strategy);
     }

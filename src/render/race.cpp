@@ -13,7 +13,7 @@ namespace keyhole {
 namespace {
 
 // Of the render; of long ones less.
-constexpr double share_of_short = 0.1, share_of_long = 0.01;
+constexpr double share_of_short = 0.06, share_of_long = 0.01;
 constexpr double share_of_sets = 0.6;        // of the race; the rest is for the winner's weights and sizes
 constexpr int chains_of_contender = 64;      // few, so that each is long enough to show how it mixes
 constexpr double fewest_mutations = 8192;    // of a contender in its first round, for a comparison to mean something
@@ -230,9 +230,9 @@ RaceLength RaceLength::of(const RenderSettings& s, int threads) {
     const auto share = [](double whole, double short_one) {
         return std::min(share_of_short * whole, short_one + share_of_long * whole);
     };
-    if (s.cpu_seconds > 0) return {share(s.cpu_seconds, 10), false};
-    if (s.seconds > 0) return {share(s.seconds * threads, 10.0 * threads), false};
-    return {share(static_cast<double>(s.mix.chain_length) * s.mix.chain_count, 1e7), true};
+    if (s.cpu_seconds > 0) return {share(s.cpu_seconds, 6), false};
+    if (s.seconds > 0) return {share(s.seconds * threads, 6.0 * threads), false};
+    return {share(static_cast<double>(s.mix.chain_length) * s.mix.chain_count, 6e6), true};
 }
 
 RaceResult race(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,

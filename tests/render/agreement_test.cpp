@@ -115,6 +115,34 @@ TEST_P(Agrees, PathTracingWithBidirectionalPathTracing) {
 TEST_P(Agrees, EveryMix) { expect_agreement_of(exact_mixes()); }
 TEST_P(Agrees, EveryMoveInPathSpace) { expect_agreement_of(path_space_moves()); }
 
+// A fused chain without one of its strategies, whichever, has the same expectation.
+TEST(FusedChain, ExpectsTheSameWithoutAnyOneStrategy) {
+    const Mix fused = builtin_mix("fused-all");
+    const std::vector<TransportCase> cases = {{"three-planes", {{"hole", "0.3"}}},
+                                              {"glass-caustic", {{"light", "0.5"}}}};
+    constexpr int runs = 12;
+    for (const TransportCase& transport : cases) {
+        const auto scene = own_scene(transport, 12, 12);
+        RenderSettings settings;
+        settings.mix.lengths.max = 5;
+        settings.integrator = Integrator::bdpt;
+        settings.mutations_per_pixel = 1000;
+        const Replicates reference = render_replicates(*scene, settings, runs);
+        settings.integrator = Integrator::mmlt;
+        settings.mutations_per_pixel = 300;
+        for (std::size_t off = 0; off < fused.strategies.size(); ++off) {
+            settings.mix = fused;
+            settings.mix.strategies[off].weight = 0;
+            settings.mix.lengths.max = 5;
+            settings.mix.chain_count = 64;
+            settings.mix.bootstrap_samples = 40000;
+            expect_agreement(render_replicates(*scene, settings, runs), reference,
+                             sidak_level(family_level, static_cast<int>(cases.size() * fused.strategies.size())),
+                             transport.scene + "-without-" + fused.strategies[off].label);
+        }
+    }
+}
+
 // Sum over pixels of the squared differences of the means, each over its variance: about their number where both agree.
 double squared_differences(const Replicates& a, const Replicates& b) {
     double sum = 0;

@@ -1,6 +1,7 @@
 // What a chain allocates: nothing in the inner loop, and little in all. The global operator new counts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -8,6 +9,8 @@
 #include "chain/mixing.h"
 #include "chain/running_mean.h"
 #include "mmlt_chain.h"
+#include "strategies/mix_file.h"
+#include "strategies/mix_states.h"
 #include "strategies/registry.h"
 
 namespace {
@@ -87,6 +90,38 @@ TEST_P(PathLoop, AllocatesNothing) {
     const std::uint64_t before = allocations;
     for (int i = 0; i < 20000; ++i) chain.step(mixture, rng, film, diagnostics);
     EXPECT_EQ(allocations, before);
+}
+
+// What makes the states of the mix and one of them, by what they allocate.
+struct Allocated {
+    std::uint64_t allocations, bytes;
+    bool operator==(const Allocated&) const = default;
+};
+Allocated allocated_by(const Mix& mix, const Scene& scene) {
+    const CoordinateLayout layout(scene, mix.lengths.max);
+    const Allocated before{allocations, allocated_bytes};
+    const auto evaluator = make_evaluator(scene, layout, mix);
+    const PssState state = evaluator->make_state();
+    return {allocations - before.allocations, allocated_bytes - before.bytes};
+}
+
+// What a mix does not use costs no memory: strategies of weight zero leave nothing behind. Their time is measured
+// (docs/benchmarks.md).
+TEST(UnusedStrategies, CostNothing) {
+    const auto scene = own_scene("keyhole-room");
+    Mix mmlt = builtin_mix("mmlt");
+    mmlt.lengths.max = 8;
+    Mix all = mmlt;
+    for (const MixStrategy& s : builtin_mix("fused-all").strategies) {
+        const bool known = std::any_of(all.strategies.begin(), all.strategies.end(),
+                                       [&](const MixStrategy& other) { return other.label == s.label; });
+        if (known) continue;
+        all.strategies.push_back(s);
+        all.strategies.back().weight = 0;
+    }
+    EXPECT_EQ(allocated_by(all, *scene), allocated_by(mmlt, *scene));
+    all.strategies.back().weight = 1;
+    EXPECT_GT(allocated_by(all, *scene).bytes, allocated_by(mmlt, *scene).bytes);
 }
 
 INSTANTIATE_TEST_SUITE_P(OwnScenes, PathLoop, testing::ValuesIn(own_scene_names()),

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <fstream>
 
+#include "chain/mixture.h"
 #include "own_scenes.h"
 #include "pathspace/neighbours.h"
 #include "statistics.h"
 #include "strategies/bidirectional.h"
 #include "strategies/caustic.h"
 #include "strategies/cone_step_size.h"
+#include "strategies/mix_file.h"
 #include "strategies/portal.h"
 
 namespace keyhole {
@@ -122,16 +124,19 @@ std::unique_ptr<Scene> scene_with_portals(const TransportCase& c) {
     return read_scene((own_scenes_folder / (c.scene + ".xml")).string(), options).scene;
 }
 
-class PathMoves : public testing::TestWithParam<std::tuple<TransportCase, MoveCase>> {
+const std::vector<std::string> fused_mixes = {"fused-all", "fused-all-walk-on"};
+
+// Paths drawn in proportion to the target, and whether moves leave them so.
+class Stationarity : public testing::Test {
   protected:
-    const TransportCase& transport = std::get<0>(GetParam());
-    std::unique_ptr<Scene> scene =
-        transport.scene == "three-planes" ? scene_with_portals(transport) : own_scene(transport, 16, 16);
+    explicit Stationarity(const TransportCase& c)
+        : scene(c.scene == "three-planes" ? scene_with_portals(c) : own_scene(c, 16, 16)) {}
+
+    std::unique_ptr<Scene> scene;
     CoordinateLayout layout{*scene, max_length};
     ChartEvaluator charts{*scene, layout, {}, {.path = true, .forgets = true, .measure = true}};
     TechniqueDistribution techniques{1, max_length};
     LargeStep large{charts, techniques};
-    std::unique_ptr<PssStrategy> move = std::get<1>(GetParam()).make(charts);
     PssState x = charts.make_state(), y = charts.make_state();
     Rng rng{7, 1};
 
@@ -160,54 +165,104 @@ class PathMoves : public testing::TestWithParam<std::tuple<TransportCase, MoveCa
         f[14] = k > 2 ? noise(v(k - 1), v(k - 2)).r_max : 0;
         return f;
     }
+
+    // Large steps weighted by their estimates of b are distributed like the target, and so they are after some moves:
+    // the weighted mean of each feature stays what it was but for noise, which the changes themselves tell.
+    // move_on(suited) makes 12 moves of x, counts those that apply and tells whether x has changed.
+    template <class MoveOn>
+    void expect_target_kept(int draws, const MoveOn& move_on) {
+        std::array<double, features> sums{}, squares{};
+        int moved = 0, suited = 0;
+        double mean = 0;
+        for (int i = 0; i < draws; ++i) {
+            large.draw(x, rng);
+            if (!(x.target > 0)) continue;
+            const double weight = large.estimate(x);
+            mean += (weight - mean) / (i + 1);
+            if (typical_target == 0) typical_target = x.target;
+            if (!(weight > 1e-7 * mean)) continue;
+            const auto before = features_of(x);
+            if (!move_on(suited)) continue;
+            ++moved;
+            const auto after = features_of(x);
+            for (std::size_t f = 0; f < features; ++f) {
+                const double change = weight * (after[f] - before[f]);
+                sums[f] += change;
+                squares[f] += change * change;
+            }
+        }
+        if (suited < 1000) GTEST_SKIP() << "does not apply here";
+        EXPECT_GT(moved, suited > 3000 ? 20 : -1) << "of " << suited;
+        const std::size_t tests = features * (moves().size() + fused_mixes.size()) * scenes().size();
+        const double bound = normal_two_sided_quantile(sidak_level(1e-3, static_cast<int>(tests)));
+        for (std::size_t f = 0; f < features; ++f)
+            EXPECT_LE(std::abs(sums[f]), bound * std::sqrt(squares[f])) << "feature " << f;
+    }
+    static constexpr int moves_each = 12;
+
+    bool accept(double ratio) {
+        EXPECT_TRUE(std::isfinite(ratio));
+        if (!(rng.uniform() < ratio)) return false;
+        std::swap(x, y);
+        return true;
+    }
+
     double typical_target = 0;
 };
 
-// Large steps weighted by their estimates of b are distributed like the target, and so they are after some moves: the
-// weighted mean of each feature stays what it was but for noise, which the changes themselves tell. Selection
-// probabilities are those of a mixture of this strategy alone: 1 where it applies. Seen red, one at a time: with the
-// portal's cosine left out, with the number of crossings left out, with the size of x's step in place of y's, without
-// the check of the support, and with one way to build the path in the bidirectional mutation.
-TEST_P(PathMoves, KeepTheTarget) {
-    std::array<double, features> sums{}, squares{};
-    int moved = 0, suited = 0;
-    double mean = 0;
-    const int draws = std::get<1>(GetParam()).name.starts_with("portal") ? 600000 : 60000;
-    for (int i = 0; i < draws; ++i) {
-        large.draw(x, rng);
-        if (!(x.target > 0)) continue;
-        const double weight = large.estimate(x);
-        mean += (weight - mean) / (i + 1);
-        if (typical_target == 0) typical_target = x.target;
-        if (!(weight > 1e-7 * mean)) continue;
-        const auto before = features_of(x);
-        bool changed = false;
-        for (int j = 0; j < 12 && move->suitability(x) > 0; ++j) {
-            ++suited;
-            Proposal p = move->propose(x, y, rng);
-            ASSERT_NE(p.failure, Failure::non_finite);
-            if (p.failure != Failure::none) continue;
+class PathMoves : public Stationarity, public testing::WithParamInterface<std::tuple<TransportCase, MoveCase>> {
+  protected:
+    PathMoves() : Stationarity(std::get<0>(GetParam())), move(std::get<1>(GetParam()).make(charts)) {}
 
-            p.ratio *= move->suitability(y);
-            ASSERT_TRUE(std::isfinite(p.ratio));
-            if (!(rng.uniform() < p.ratio)) continue;
-            std::swap(x, y);
-            changed = true;
+    std::unique_ptr<PssStrategy> move;
+};
+
+// Selection probabilities are those of a mixture of this strategy alone: 1 where it applies. Seen red, one at a time:
+// with the portal's cosine left out, with the number of crossings left out, with the size of x's step in place of y's,
+// without the check of the support, and with one way to build the path in the bidirectional mutation.
+TEST_P(PathMoves, KeepTheTarget) {
+    const int draws = std::get<1>(GetParam()).name.starts_with("portal") ? 600000 : 60000;
+    expect_target_kept(draws, [&](int& suited) {
+        bool changed = false;
+        for (int j = 0; j < moves_each && move->suitability(x) > 0; ++j) {
+            ++suited;
+            const Proposal p = move->propose(x, y, rng);
+            EXPECT_NE(p.failure, Failure::non_finite);
+            if (p.failure == Failure::none) changed |= accept(p.ratio * move->suitability(y));
         }
-        if (!changed) continue;
-        ++moved;
-        const auto after = features_of(x);
-        for (std::size_t f = 0; f < features; ++f) {
-            const double change = weight * (after[f] - before[f]);
-            sums[f] += change;
-            squares[f] += change * change;
-        }
+        return changed;
+    });
+}
+
+class FusedMoves : public Stationarity, public testing::WithParamInterface<std::tuple<TransportCase, std::string>> {
+  protected:
+    FusedMoves() : Stationarity(std::get<0>(GetParam())) {}
+
+    Mixture<PssState, Rng> make_mixture(const Mix& mix) {
+        const StrategyContext context{charts, &charts, techniques, {1, max_length}, mix.rectification};
+        std::vector<Mixture<PssState, Rng>::Component> components;
+        for (const MixStrategy& s : mix.strategies)
+            if (s.info->hindrance(*scene, {1, max_length}).empty())
+                components.push_back({s.info->make(context, s.parameters), s.weight});
+        return Mixture<PssState, Rng>(std::move(components));
     }
-    if (suited < 1000) GTEST_SKIP() << "does not apply here";
-    EXPECT_GT(moved, suited > 3000 ? 20 : -1) << "of " << suited;
-    const double bound = normal_two_sided_quantile(sidak_level(1e-3, features * 15 * 6));
-    for (std::size_t f = 0; f < features; ++f)
-        EXPECT_LE(std::abs(sums[f]), bound * std::sqrt(squares[f])) << "feature " << f;
+};
+
+// Moves of both spaces in one chain: the technique drawn from its conditional and coordinates from the inverse where a
+// move asks for them, states as the moves before have left them. Seen red with the technique drawn evenly among those
+// that can make the path.
+TEST_P(FusedMoves, KeepTheTarget) {
+    const Mixture<PssState, Rng> mixture = make_mixture(builtin_mix(std::get<1>(GetParam())));
+    expect_target_kept(1000000, [&](int& suited) {
+        bool changed = false;
+        for (int j = 0; j < moves_each; ++j) {
+            ++suited;
+            const auto selection = mixture.select(x, rng);
+            const Proposal p = mixture.strategy(selection.index).propose(x, y, rng);
+            if (p.failure == Failure::none) changed |= accept(mixture.completed_ratio(p.ratio, selection, y));
+        }
+        return changed;
+    });
 }
 
 // What a move leaves is a state like any other: its C, its weights and its contribution are those of its path.
@@ -238,6 +293,12 @@ INSTANTIATE_TEST_SUITE_P(OwnScenes, PathMoves,
                          testing::Combine(testing::ValuesIn(scenes()), testing::ValuesIn(moves())),
                          [](const auto& test) {
                              return test_name_of(std::get<0>(test.param).scene) + "_" + std::get<1>(test.param).name;
+                         });
+
+INSTANTIATE_TEST_SUITE_P(OwnScenes, FusedMoves,
+                         testing::Combine(testing::ValuesIn(scenes()), testing::ValuesIn(fused_mixes)),
+                         [](const auto& test) {
+                             return test_name_of(std::get<0>(test.param).scene + "_" + std::get<1>(test.param));
                          });
 
 }  // namespace
