@@ -32,11 +32,15 @@ CLI::Option* add_set_option(CLI::App& command, std::function<void(const Setting&
         ->take_all();
 }
 
-std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options, const std::string& fallback) {
+CLI::Option* add_mix_option(CLI::App& command, MixOptions& options, const std::string& help,
+                            const std::string& fallback) {
     const auto mix = [&options](const std::string& text) { options.name = text; };
-    return {add_parsed(
-                command, "--mix", "NAME|FILE", mix,
-                "How the chains move: a mix that `keyhole mixes` lists, or a file (.toml) [default: " + fallback + "]"),
+    return add_parsed(command, "--mix", "NAME|FILE", mix,
+                      help + ": a mix that `keyhole mixes` lists, or a file (.toml) [default: " + fallback + "]");
+}
+
+std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options, const std::string& fallback) {
+    return {add_mix_option(command, options, "How the chains move", fallback),
             add_set_option(command, [&options](const Setting& s) { options.settings.push_back(s); })};
 }
 

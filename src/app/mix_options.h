@@ -25,9 +25,12 @@ struct MixOptions {
 // --set alone.
 CLI::Option* add_set_option(CLI::App& command, std::function<void(const Setting&)> take);
 
+// --mix alone; `help` says of what, `fallback` is the default.
+CLI::Option* add_mix_option(CLI::App& command, MixOptions& options, const std::string& help,
+                            const std::string& fallback);
+
 // --mix and --set. `options` must live until the command line has been parsed.
-std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options,
-                                          const std::string& fallback = "mmlt");
+std::vector<CLI::Option*> add_mix_options(CLI::App& command, MixOptions& options, const std::string& fallback = "mmlt");
 
 // An option that stands for `--set KEY=VALUE`.
 CLI::Option* add_mix_key(CLI::App& command, MixOptions& options, const std::string& name, const std::string& key,

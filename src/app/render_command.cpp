@@ -53,8 +53,8 @@ void print_tuning(const TuningStatistics& t, bool verbose) {
                format_duration(t.cpu_seconds));
     if (!verbose) return;
     for (const auto& c : t.contenders)
-        fmt::print("  {:<48} {:>8} mutations in {}, error {:.3g}, efficiency {:.3g}\n", c.name,
-                   format_count(c.mutations), format_duration(c.cpu_seconds), c.error, c.efficiency());
+        fmt::print("  {:<48} {:>8} mutations in {}, error {:.3g}\n", c.name, format_count(c.mutations),
+                   format_duration(c.cpu_seconds), c.error);
 }
 
 // What the disagreement of replicates says.

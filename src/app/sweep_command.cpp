@@ -71,9 +71,7 @@ int run(const SweepOptions& options) {
 void add_sweep_command(CLI::App& keyhole, Runner& runner) {
     const auto options = std::make_shared<SweepOptions>();
     CLI::App* command = keyhole.add_subcommand("sweep", "Measure how a parameter of a mix changes its speed and error");
-    const auto mix = [options](const std::string& text) { options->comparison.mix.name = text; };
-    add_parsed(*command, "--mix", "NAME|FILE", mix,
-               "The mix: one that `keyhole mixes` lists, or a file (.toml) [default: mmlt]");
+    add_mix_option(*command, options->comparison.mix, "What is varied", "mmlt");
     const auto vary = [options](const std::string& text) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())

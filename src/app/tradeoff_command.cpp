@@ -214,9 +214,7 @@ int run(const TradeoffOptions& options) {
 void add_tradeoff_command(CLI::App& keyhole, Runner& runner) {
     const auto options = std::make_shared<TradeoffOptions>();
     CLI::App* command = keyhole.add_subcommand("tradeoff", "Measure what each knob does to speed and accuracy");
-    const auto mix = [options](const std::string& text) { options->comparison.mix.name = text; };
-    add_parsed(*command, "--mix", "NAME|FILE", mix,
-               "The mix whose knobs are turned: one that `keyhole mixes` lists, or a file (.toml) [default: fused]");
+    add_mix_option(*command, options->comparison.mix, "Whose knobs are turned", "fused");
     const auto knobs = [options](const std::string& text) {
         for (const std::string& name : split_list(text)) options->knobs.push_back(name);
     };

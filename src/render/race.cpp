@@ -7,6 +7,7 @@
 
 #include "base/process.h"
 #include "render/chain_run.h"
+#include "strategies/cones_bind.h"
 #include "strategies/mix_variants.h"
 
 namespace keyhole {
@@ -38,6 +39,15 @@ Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
         g.seeds = std::move(kept);
     }
     return part;
+}
+
+bool applies(const MixStrategy& s, const Scene& scene, const Mix& pool, const Bootstrap& seeds) {
+    if (!s.info->hindrance(scene, pool.lengths).empty()) return false;
+    if (!s.info->cones) return true;
+    std::vector<const PssState*> paths;
+    for (const ChainGroup& g : seeds.groups)
+        for (const ChainSeed& seed : g.seeds) paths.push_back(&seed.state);
+    return cones_bind(s, scene, paths);
 }
 
 class Contender {
@@ -241,7 +251,8 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const Bootstrap seeds = part_of(bootstrap, chains_of_contender);
     Race race(scene, settings, layout, techniques, seeds, length, stop);
     RaceResult result;
-    std::vector<MixVariant> all = sets_of(settings.mix, scene);
+    std::vector<MixVariant> all =
+        sets_of(settings.mix, [&](const MixStrategy& s) { return applies(s, scene, settings.mix, seeds); });
     if (all.size() == 1) {
         result.statistics.winner = all.front().name;
         result.mix = std::move(all.front().mix);

@@ -15,21 +15,18 @@ constexpr double step = 3;  // by which weights and sizes are changed
 // inverses and cones are worth little alone, and have their place in the last.
 const std::vector<std::string> sets = {"mmlt", "mlt", "portal", "fused", "fused-portal", "fused-all"};
 
-bool applies(const MixStrategy& s, const Scene& scene, const Mix& mix) {
-    return s.weight > 0 && s.info->hindrance(scene, mix.lengths).empty();
-}
-
-// The pool with the strategies of the set that are in it and apply to the scene, at the set's weights times the pool's,
-// with the pool's parameters. Without strategies where the set has one that the pool leaves out.
-Mix from_set(const Mix& pool, const Mix& set, const Scene& scene) {
+// Without strategies where the set has one that the pool leaves out.
+Mix from_set(const Mix& pool, const Mix& set, const std::function<bool(const MixStrategy&)>& applies) {
     Mix mix = pool;
     mix.tuning = Mix::Tuning::off;
     mix.strategies.clear();
     for (const MixStrategy& s : set.strategies) {
-        if (!applies(s, scene, pool)) continue;
+        if (!(s.weight > 0)) continue;
         const auto own = std::find_if(pool.strategies.begin(), pool.strategies.end(),
                                       [&](const MixStrategy& p) { return p.info == s.info && p.weight > 0; });
-        if (own == pool.strategies.end()) {
+        const bool left_out = own == pool.strategies.end();
+        if (!applies(left_out ? s : *own)) continue;
+        if (left_out) {
             mix.strategies.clear();
             return mix;
         }
@@ -42,10 +39,10 @@ Mix from_set(const Mix& pool, const Mix& set, const Scene& scene) {
 
 }  // namespace
 
-std::vector<MixVariant> sets_of(const Mix& pool, const Scene& scene) {
+std::vector<MixVariant> sets_of(const Mix& pool, const std::function<bool(const MixStrategy&)>& applies) {
     std::vector<MixVariant> variants;
     for (const std::string& name : sets) {
-        Mix mix = from_set(pool, builtin_mix(name), scene);
+        Mix mix = from_set(pool, builtin_mix(name), applies);
         const bool known = std::any_of(variants.begin(), variants.end(),
                                        [&](const MixVariant& v) { return v.mix.strategies == mix.strategies; });
         if (!mix.strategies.empty() && !known) variants.push_back({name, std::move(mix)});

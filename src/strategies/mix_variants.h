@@ -1,6 +1,8 @@
 // Mixes that a pool of strategies gives, for a race to choose from.
 #pragma once
 
+#include <functional>
+
 #include "strategies/mix.h"
 
 namespace keyhole {
@@ -10,9 +12,9 @@ struct MixVariant {
     Mix mix;
 };
 
-// The built-in mixes whose strategies all are in the pool, at their weights times the pool's and with the pool's
-// parameters, without those that do not apply to the scene; the simplest first. The pool alone where there is none.
-std::vector<MixVariant> sets_of(const Mix& pool, const Scene& scene);
+// Of the built-in mixes the strategies that apply, at their weights times the pool's and with the pool's parameters,
+// where all of them are in the pool; the simplest first. The pool alone where there is none.
+std::vector<MixVariant> sets_of(const Mix& pool, const std::function<bool(const MixStrategy&)>& applies);
 
 // The mix with one weight or the sizes of one strategy three times as large or small.
 std::vector<MixVariant> neighbours_of(const MixVariant& mix);

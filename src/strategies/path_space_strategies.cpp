@@ -46,7 +46,10 @@ Parameter primary_ray() { return Parameter::choice("primary", {"raster", "angle"
 // Sizes of steps by angle.
 std::vector<Parameter> angles() {
     return {Parameter::number("r-min", 0x1p-8, 0, 1.5, "smallest change of a direction").open().of_step().in("radians"),
-            Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform").open().of_step().in("radians")};
+            Parameter::number("r-max", 0x1p-4, 0, 1.5, "largest change; logarithms are uniform")
+                .open()
+                .of_step()
+                .in("radians")};
 }
 std::string contradiction_of_angles(const Values& v) {
     if (number(v, "r-min") < number(v, "r-max")) return {};
@@ -72,7 +75,7 @@ void add_sizes(StrategyInfo& info, Parameter choice) {
         return contradiction_of_angles(v);
     };
 }
-std::unique_ptr<const StepSize> fixed_size(const StrategyContext&, const Values& v) {
+std::unique_ptr<const StepSize> fixed_size(const Scene&, const Values& v) {
     return std::make_unique<FixedStepSize>(number(v, "r-min"), number(v, "r-max"));
 }
 // Of strategies without that choice: none.
@@ -100,7 +103,7 @@ void add_cones(StrategyInfo& info) {
         return fmt::format("tau-min = {} is above tau-max = {}", number(v, "tau-min"), number(v, "tau-max"));
     };
 }
-std::unique_ptr<const StepSize> cone_size(const StrategyContext& c, const Values& v) {
+std::unique_ptr<const StepSize> cone_size(const Scene& scene, const Values& v) {
     ConeSettings settings;
     settings.estimator = is_choice(v, "estimator", "fast")    ? ConeEstimator::fast
                          : is_choice(v, "estimator", "exact") ? ConeEstimator::exact
@@ -110,19 +113,19 @@ std::unique_ptr<const StepSize> cone_size(const StrategyContext& c, const Values
     settings.t2 = number(v, "t2");
     settings.tau_min = number(v, "tau-min");
     settings.tau_max = number(v, "tau-max");
-    return std::make_unique<ConeStepSize>(c.charts->tracer().scene(), settings, number(v, "alpha"));
+    return std::make_unique<ConeStepSize>(scene, settings, number(v, "alpha"));
 }
 
 // What makes a strategy's sizes; add_sizes or add_cones have their parameters.
-using MakeSize = std::unique_ptr<const StepSize>(const StrategyContext&, const Values&);
+using MakeSize = std::unique_ptr<const StepSize>(const Scene&, const Values&);
 
 template <EyePerturbation::Chains chains, MakeSize make_size>
 StrategyInfo eye_perturbation(const char* name, const char* description) {
     StrategyInfo info = path_space(name, description);
     if (chains == EyePerturbation::Chains::many) info.hindrance = needs_three_edges;
     info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<EyePerturbation>(*c.charts, chains, make_size(c, v), number(v, "roughness"),
-                                                 raster_step(v, "primary"));
+        return std::make_unique<EyePerturbation>(*c.charts, chains, make_size(c.charts->tracer().scene(), v),
+                                                 number(v, "roughness"), raster_step(v, "primary"));
     };
     return info;
 }
@@ -132,8 +135,8 @@ StrategyInfo caustic_perturbation(const char* name, const char* description) {
     StrategyInfo info = path_space(name, description);
     info.hindrance = needs_three_edges;
     info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<CausticPerturbation>(*c.charts, make_size(c, v), raster_step(v, "size"),
-                                                     number(v, "roughness"));
+        return std::make_unique<CausticPerturbation>(*c.charts, make_size(c.charts->tracer().scene(), v),
+                                                     raster_step(v, "size"), number(v, "roughness"));
     };
     return info;
 }
@@ -144,6 +147,7 @@ StrategyInfo with_sizes(StrategyInfo info, const Parameter& choice) {
 }
 StrategyInfo with_cones(StrategyInfo info) {
     add_cones(info);
+    info.cones = cone_size;
     return info;
 }
 
@@ -196,8 +200,8 @@ StrategyInfo portal_lens() {
     add_portal_point(info);
     info.hindrance = needs_portals;
     info.make = [](const StrategyContext& c, const Values& v) -> std::unique_ptr<PssStrategy> {
-        return std::make_unique<PortalLens>(*c.charts, fixed_size(c, v), number(v, "roughness"),
-                                            raster_step(v, "primary"), portal_point(v));
+        return std::make_unique<PortalLens>(*c.charts, fixed_size(c.charts->tracer().scene(), v),
+                                            number(v, "roughness"), raster_step(v, "primary"), portal_point(v));
     };
     return info;
 }

@@ -13,6 +13,8 @@
 
 namespace keyhole {
 
+class StepSize;
+
 // What a strategy is made from, for one thread. Must outlive it.
 struct StrategyContext {
     Evaluator& evaluator;
@@ -37,6 +39,8 @@ struct StrategyInfo {
     // What is wrong with values that are each valid alone; empty: nothing. May be null.
     std::string (*contradiction)(const Values&) = nullptr;
     std::unique_ptr<PssStrategy> (*make)(const StrategyContext&, const Values&);
+    // What makes the sizes of its steps, where these are the cones about edges; else null.
+    std::unique_ptr<const StepSize> (*cones)(const Scene&, const Values&) = nullptr;
 };
 
 // In the order of the documentation.

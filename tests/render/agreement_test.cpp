@@ -18,7 +18,7 @@ struct MixCase {
 MixCase alone(const std::string& name, const std::string& parameters, const std::string& ergodic = "large-step") {
     const std::string text = "name = \"" + name + "\"\n[[strategy]]\ntype = \"" + ergodic +
                              "\"\nweight = 0.3\n[[strategy]]\nweight = 0.7\n" + parameters;
-    return {parse_mix(text, name), 1200};
+    return {parse_mix(text, name), 1000};
 }
 
 // Moves in path space, each alone.
@@ -48,7 +48,8 @@ const std::vector<MixCase>& path_space_moves() {
 // those whose moves are tested in others as well, have fewer.
 double mutations_per_pixel(const std::string& mix) {
     if (mix == "mmlt" || mix == "mmlt-gaussian" || mix == "rjmlt") return 4000;
-    return mix == "geomlt-exact" ? 800 : mix == "auto" || mix.starts_with("fused") ? 1000 : 2000;
+    if (mix == "geomlt-exact" || mix.ends_with("walk-on")) return 800;
+    return mix == "auto" || mix.starts_with("fused") ? 1000 : 1500;
 }
 const std::vector<MixCase>& exact_mixes() {
     static const std::vector<MixCase> cases = [] {
