@@ -41,12 +41,12 @@ double BlockRecord::disagreeing_light(double memory) const {
     const std::size_t batches = batches_.size();
     if (batches < max_batches / 2 || !std::isfinite(memory)) return -1;
     std::vector<std::vector<std::vector<double>>> sums(current_.size());
-    std::vector<double> light(BlockGrid::count, 0.0);
+    std::vector<double> light(current_[0].size(), 0.0);
     double all = 0;
     for (std::size_t r = 0; r < sums.size(); ++r)
         for (const ByReplicate& batch : batches_) {
             std::vector<double>& values = sums[r].emplace_back();
-            for (int j = 0; j < BlockGrid::count; ++j) {
+            for (std::size_t j = 0; j < light.size(); ++j) {
                 values.push_back(batch[r][j]);
                 light[j] += values.back();
                 all += values.back();

@@ -15,8 +15,8 @@ class BlockRecord {
     static constexpr std::size_t max_batches = 8;
     using ByReplicate = std::vector<BlockSums>;
 
-    BlockRecord(std::size_t groups, std::size_t replicates)
-        : totals_(groups, ByReplicate(replicates)), current_(replicates) {}
+    BlockRecord(std::size_t groups, std::size_t replicates, std::size_t blocks)
+        : totals_(groups, ByReplicate(replicates, BlockSums(blocks))), current_(replicates, BlockSums(blocks)) {}
 
     // Mutations of each chain before the present batch ends: all chains must stop there.
     std::uint64_t left_of_batch() const { return batch_length_ - filled_; }

@@ -43,15 +43,16 @@ RunningMean merged(const std::vector<RunningMean>& replicates) {
 }  // namespace
 
 ChainRun::ChainRun(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
-                   const TechniqueDistribution& techniques, Bootstrap bootstrap, bool films)
+                   const TechniqueDistribution& techniques, Bootstrap bootstrap, const Recording& recording)
     : scene_(scene),
       groups_(std::move(bootstrap.groups)),
       chains_(start_chains(groups_, settings.mix.seed)),
       chain_counts_(cells<double>()),
-      blocks_(groups_.size(), replicates()),
-      workers_([&, films, this] {
+      grid_(RasterWindow(scene.film()), recording.block_side),
+      blocks_(groups_.size(), replicates(), grid_.count()),
+      workers_([&, recording, this] {
           return std::make_unique<ChainWorker>(scene, layout, techniques, settings.mix, groups_.size(),
-                                               settings.error_image ? &replicate_films_ : nullptr, films);
+                                               settings.error_image ? &replicate_films_ : nullptr, recording);
       }) {
     for (const RunningChain& c : chains_) ++chain_counts_[c.group][c.replicate];
     if (settings.mix.exchange_every > 0)
@@ -176,9 +177,8 @@ ReplicateRecord ChainRun::record() const {
     record.mutations = mutations();
     record.blocks = blocks_.totals();
     record.states = cells<ObservableMoments>();
-    const BlockGrid grid(record.window);
     for (const RunningChain& c : chains_) {
-        BlockSink sink{grid, record.blocks[c.group][c.replicate]};
+        BlockSink sink{grid_, record.blocks[c.group][c.replicate]};
         c.chain.splat_held(sink);
         record.states[c.group][c.replicate] += c.states;
     }

@@ -13,9 +13,9 @@ namespace keyhole {
 
 class ChainRun {
   public:
-    // `settings` are resolved, and must outlive it as all else. Without films there is no image, only a record.
+    // `settings` are resolved, and must outlive it as all else.
     ChainRun(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
-             const TechniqueDistribution& techniques, Bootstrap bootstrap, bool films = true);
+             const TechniqueDistribution& techniques, Bootstrap bootstrap, const Recording& recording = {});
 
     // Makes at most that many mutations of each chain, and returns how many.
     std::uint64_t advance(std::uint64_t most);
@@ -53,6 +53,7 @@ class ChainRun {
     std::vector<ChainGroup> groups_;
     std::vector<RunningChain> chains_;
     Cells<double> chain_counts_;
+    BlockGrid grid_;
     BlockRecord blocks_;
     ReplicateFilms replicate_films_;
     tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker>> workers_;

@@ -51,17 +51,18 @@ std::vector<const MixStrategy*> applicable_strategies(const Mix& mix, const Scen
 }
 
 ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                         const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films, bool with_films)
+                         const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films,
+                         const Recording& recording)
     : evaluator(make_evaluator(scene, layout, mix)),
       mixture(make_mixture(
           applicable_strategies(mix, scene),
           {*evaluator, dynamic_cast<ChartEvaluator*>(evaluator.get()), techniques, mix.lengths, mix.rectification})),
-      films(replicate_films || !with_films ? 0 : groups, MetropolisFilm(scene.film())),
-      blocks(groups, std::vector<BlockSums>(replicate_count(mix))),
+      films(replicate_films || !recording.films ? 0 : groups, MetropolisFilm(scene.film())),
+      grid(evaluator->window(), recording.block_side),
+      blocks(groups, std::vector<BlockSums>(replicate_count(mix), BlockSums(grid.count()))),
       largest(groups),
       diagnostics(mixture.size()),
       jumps(mixture.size()),
-      grid_(evaluator->window()),
       replicate_films_(replicate_films),
       most_redraws_(mix.rectification.policy == Rectification::exclude ? most_redraws : 0),
       estimator_(*evaluator, techniques, mix.lengths.fixed) {
@@ -71,7 +72,7 @@ ChainWorker::ChainWorker(const Scene& scene, const CoordinateLayout& layout, con
 
 template <class Body>
 void ChainWorker::with_sink(const RunningChain& running, const Body& body) {
-    BlockSink blocks_sink{grid_, blocks[running.group][running.replicate]};
+    BlockSink blocks_sink{grid, blocks[running.group][running.replicate]};
     if (replicate_films_) {
         PairSink<SharedMetropolisFilm> sink{{(*replicate_films_)[running.group][running.replicate]}, blocks_sink};
         body(sink);

@@ -64,11 +64,18 @@ struct BlockSink {
 // Films that all workers add to, by group and replicate; empty where no errors of pixels are asked for.
 using ReplicateFilms = std::vector<std::vector<SharedMetropolisFilm>>;
 
+// What is kept of splats.
+struct Recording {
+    bool films = true;  // else there is no image
+    int block_side = BlockGrid::usual_side;
+};
+
 class ChainWorker {
   public:
-    // `mix` is resolved. `films`: one for each of the groups, unless there are films of replicates to add to, or false.
+    // `mix` is resolved. There is a film for each of the groups, unless there are films of replicates to add to.
     ChainWorker(const Scene& scene, const CoordinateLayout& layout, const TechniqueDistribution& techniques,
-                const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films = nullptr, bool films = true);
+                const Mix& mix, std::size_t groups, ReplicateFilms* replicate_films = nullptr,
+                const Recording& recording = {});
 
     void advance(RunningChain& running, std::uint64_t mutations);
 
@@ -78,7 +85,8 @@ class ChainWorker {
 
     std::unique_ptr<Evaluator> evaluator;
     Mixture<PssState, Rng> mixture;
-    std::vector<MetropolisFilm> films;           // by group
+    std::vector<MetropolisFilm> films;  // by group
+    BlockGrid grid;
     std::vector<std::vector<BlockSums>> blocks;  // by group and replicate
     std::vector<Largest<heaviest>> largest;      // by group: estimates of b by independent proposals
     Diagnostics diagnostics;
@@ -96,7 +104,6 @@ class ChainWorker {
     void observe(RunningChain& running, const StepOutcome& outcome);
     Observables observables(const PssState& state) const;
 
-    BlockGrid grid_;
     ReplicateFilms* replicate_films_;
     int most_redraws_;
     std::vector<char> independent_;  // of each strategy: whether its proposals estimate b

@@ -13,20 +13,25 @@ constexpr double most_disagreeing = 0.2;        // of the light
 
 std::vector<float> block_means(const ReplicateRecord& record, const ReplicateErrors& errors, std::size_t g,
                                std::size_t r) {
-    const double scale = errors.b(g) / errors.mutations(g) * BlockGrid::count / record.window.area();
-    std::vector<float> means(BlockGrid::count + 1);
-    for (int j = 0; j < BlockGrid::count; ++j) {
-        means[j] = static_cast<float>(scale * record.blocks[g][r][j]);
-        means[BlockGrid::count] += means[j] / BlockGrid::count;  // the last is the whole image's
+    const BlockSums& blocks = record.blocks[g][r];
+    const auto count = static_cast<double>(blocks.size());
+    const double scale = errors.b(g) / errors.mutations(g) * count / record.window.area();
+    std::vector<float> means(blocks.size());
+    double all = 0;
+    for (std::size_t j = 0; j < blocks.size(); ++j) {
+        means[j] = static_cast<float>(scale * blocks[j]);
+        all += means[j] / count;
     }
+    means.push_back(static_cast<float>(all));  // the whole image's
     return means;
 }
 
 void report_blocks(const ReplicateRecord& record, ErrorStatistics& result) {
     const ReplicateErrors errors(record.b, record.mutations);
     const auto part = [&](std::size_t g, std::size_t r) { return block_means(record, errors, g, r); };
-    result.block_errors = errors.standard_errors(BlockGrid::count + 1, part);
-    result.block_means.assign(BlockGrid::count + 1, 0.0);
+    const std::size_t values = record.blocks[0][0].size() + 1;
+    result.block_errors = errors.standard_errors(values, part);
+    result.block_means.assign(values, 0.0);
     for (std::size_t g = 0; g < record.blocks.size(); ++g)
         for (std::size_t r = 0; r < record.blocks[g].size(); ++r) {
             const std::vector<float> means = part(g, r);
@@ -37,7 +42,7 @@ void report_blocks(const ReplicateRecord& record, ErrorStatistics& result) {
     result.block_means.pop_back();
     result.block_errors.pop_back();
     double sum = 0;
-    for (const double error : result.block_errors) sum += error / BlockGrid::count;
+    for (const double error : result.block_errors) sum += error / static_cast<double>(result.block_errors.size());
     if (mean > 0) result.blocks_relative = sum / mean;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/process.h"
 #include "render/chain_run.h"
@@ -14,14 +15,15 @@ namespace keyhole {
 namespace {
 
 // Of the render; of long ones less.
-constexpr double share_of_short = 0.06, share_of_long = 0.01;
+constexpr double share_of_short = 0.05, share_of_long = 0.01;
 constexpr double share_of_sets = 0.6;        // of the race; the rest is for the winner's weights and sizes
 constexpr int chains_of_contender = 64;      // few, so that each is long enough to show how it mixes
 constexpr double fewest_mutations = 8192;    // of a contender in its first round, for a comparison to mean something
 constexpr double worth_a_set = 1.1;          // more efficient than the fallback; less may be chance
 constexpr double worth_a_change = 1.3;       // the same of a change of the winner: there are many to choose from
 constexpr double largest_known_error = 0.5;  // of blocks, relative; what is seen with a larger one is mostly chance
-constexpr std::uint64_t mutations_of_pass = 16;  // of each chain
+constexpr std::uint64_t mutations_of_pass = 64;  // of each chain
+constexpr int most_fine = 4;                     // cells of a block, a side
 
 // What a race without a clear result ends with: every move that there is, so that none that matters is missing.
 const std::string fallback = "fused-all";
@@ -39,6 +41,13 @@ Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
         g.seeds = std::move(kept);
     }
     return part;
+}
+
+// Cells in which errors are compared, by block and side: as many as there are pixels, but few enough to keep them of
+// every replicate of every contender.
+int fine_cells(const Scene& scene) {
+    const int pixels = std::min(scene.film().crop_width, scene.film().crop_height) / BlockGrid::usual_side;
+    return pixels >= most_fine ? most_fine : std::max(1, pixels);
 }
 
 bool applies(const MixStrategy& s, const Scene& scene, const Mix& pool, const Bootstrap& seeds) {
@@ -61,7 +70,8 @@ class Contender {
         for (ChainGroup& g : own.groups)
             for (ChainSeed& seed : g.seeds) fit_state(seed.state, settings_.mix);
         for (const ChainGroup& g : own.groups) chains_ += static_cast<double>(g.seeds.size());
-        run_ = std::make_unique<ChainRun>(scene, settings_, layout, techniques, std::move(own), false);
+        run_ = std::make_unique<ChainRun>(scene, settings_, layout, techniques, std::move(own),
+                                          Recording{false, fine_cells(scene) * BlockGrid::usual_side});
     }
 
     void advance() {
@@ -92,8 +102,9 @@ class Contender {
     ReplicateRecord record() const { return run_->record(); }
     double mutations() const { return mutations_; }
     double seconds() const { return seconds_; }
-    double error = 0;  // mean squared relative error of the blocks
-    bool known() const { return error < largest_known_error * largest_known_error; }
+    double error = 0;        // mean squared relative error of the cells
+    double block_error = 0;  // of the blocks
+    bool known() const { return block_error < largest_known_error * largest_known_error; }
 
   private:
     std::string name_;
@@ -102,13 +113,13 @@ class Contender {
     std::unique_ptr<ChainRun> run_;
 };
 
-using Blocks = std::array<double, BlockGrid::count>;
+using Cells = std::vector<double>;
 
-// The light of the blocks as each replicate has it, up to a factor. The b of a group is that of all replicates.
-std::vector<Blocks> block_means(const ReplicateRecord& record) {
-    std::vector<Blocks> means;
+// The light of the cells as each replicate has it, up to a factor. The b of a group is that of all replicates.
+std::vector<Cells> cell_means(const ReplicateRecord& record) {
+    std::vector<Cells> means;
     for (std::size_t r = 0; r < record.blocks[0].size(); ++r) {
-        Blocks sum{};
+        Cells sum(record.blocks[0][r].size());
         bool has_chains = false;
         for (std::size_t g = 0; g < record.blocks.size(); ++g) {
             const double mutations = record.mutations[g][r];
@@ -116,12 +127,20 @@ std::vector<Blocks> block_means(const ReplicateRecord& record) {
             has_chains = true;
             RunningMean b;
             for (const RunningMean& replicate : record.b[g]) b.merge(replicate);
-            for (int j = 0; j < BlockGrid::count; ++j)
-                sum[static_cast<std::size_t>(j)] += b.mean() * record.blocks[g][r][j] / mutations;
+            for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += b.mean() * record.blocks[g][r][j] / mutations;
         }
-        if (has_chains) means.push_back(sum);
+        if (has_chains) means.push_back(std::move(sum));
     }
     return means;
+}
+
+// The blocks of `fine` x `fine` cells each.
+Cells blocks_of(const Cells& cells, std::size_t fine) {
+    constexpr std::size_t side = BlockGrid::usual_side;
+    Cells blocks(side * side);
+    for (std::size_t j = 0; j < cells.size(); ++j)
+        blocks[j / (side * fine) / fine * side + j % (side * fine) / fine] += cells[j];
+    return blocks;
 }
 
 class Race {
@@ -174,31 +193,43 @@ class Race {
 
     // By their errors times their time. All see the same image, so its means are those of all together.
     void rank(std::vector<std::unique_ptr<Contender>>& field) const {
-        Blocks all{};
-        std::vector<std::vector<Blocks>> means;
+        const auto fine = static_cast<std::size_t>(fine_cells(scene_));
+        std::vector<std::vector<Cells>> cells, blocks;
         for (const auto& contender : field) {
-            means.push_back(block_means(contender->record()));
-            for (const Blocks& replicate : means.back())
-                for (std::size_t j = 0; j < all.size(); ++j)
-                    all[j] += replicate[j] / static_cast<double>(means.back().size() * field.size());
+            cells.push_back(cell_means(contender->record()));
+            blocks.emplace_back();
+            for (const Cells& replicate : cells.back()) blocks.back().push_back(blocks_of(replicate, fine));
         }
-        double mean = 0;
-        for (const double v : all) mean += v / static_cast<double>(all.size());
-        for (std::size_t c = 0; c < field.size(); ++c) field[c]->error = squared_error(means[c], all, mean);
+        const Cells all_cells = mean_of(cells), all_blocks = mean_of(blocks);
+        for (std::size_t c = 0; c < field.size(); ++c) {
+            field[c]->error = squared_error(cells[c], all_cells);
+            field[c]->block_error = squared_error(blocks[c], all_blocks);
+        }
         std::stable_sort(field.begin(), field.end(),
                          [&](const auto& a, const auto& b) { return a->cost(length_) < b->cost(length_); });
     }
 
-    // Relative to the blocks of `all`; dark ones count less.
-    static double squared_error(const std::vector<Blocks>& replicates, const Blocks& all, double mean) {
+    static Cells mean_of(const std::vector<std::vector<Cells>>& contenders) {
+        Cells mean(contenders[0][0].size());
+        for (const std::vector<Cells>& replicates : contenders)
+            for (const Cells& r : replicates)
+                for (std::size_t j = 0; j < mean.size(); ++j)
+                    mean[j] += r[j] / static_cast<double>(replicates.size() * contenders.size());
+        return mean;
+    }
+
+    // Relative to the cells of `all`; dark ones count less.
+    static double squared_error(const std::vector<Cells>& replicates, const Cells& all) {
         constexpr double dark = 0.05;  // of the image's mean
         const auto n = static_cast<double>(replicates.size());
+        double mean = 0;
+        for (const double v : all) mean += v / static_cast<double>(all.size());
         if (n < 2 || !(mean > 0)) return std::numeric_limits<double>::infinity();
         double error = 0;
         for (std::size_t j = 0; j < all.size(); ++j) {
             double own = 0, square = 0;
-            for (const Blocks& r : replicates) own += r[j] / n;
-            for (const Blocks& r : replicates) square += (r[j] - own) * (r[j] - own);
+            for (const Cells& r : replicates) own += r[j] / n;
+            for (const Cells& r : replicates) square += (r[j] - own) * (r[j] - own);
             error += square / (n * (n - 1)) / (all[j] * all[j] + dark * dark * mean * mean);
         }
         return error / static_cast<double>(all.size());
@@ -240,9 +271,9 @@ RaceLength RaceLength::of(const RenderSettings& s, int threads) {
     const auto share = [](double whole, double short_one) {
         return std::min(share_of_short * whole, short_one + share_of_long * whole);
     };
-    if (s.cpu_seconds > 0) return {share(s.cpu_seconds, 6), false};
-    if (s.seconds > 0) return {share(s.seconds * threads, 6.0 * threads), false};
-    return {share(static_cast<double>(s.mix.chain_length) * s.mix.chain_count, 6e6), true};
+    if (s.cpu_seconds > 0) return {share(s.cpu_seconds, 5), false};
+    if (s.seconds > 0) return {share(s.seconds * threads, 5.0 * threads), false};
+    return {share(static_cast<double>(s.mix.chain_length) * s.mix.chain_count, 5e6), true};
 }
 
 RaceResult race(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
