@@ -107,11 +107,8 @@ Json tuning_json(const TuningStatistics& t) {
                  {"cpu_seconds", t.cpu_seconds},
                  {"contenders", Json::array()}};
     for (const auto& c : t.contenders)
-        json["contenders"].push_back({{"name", c.name},
-                                      {"mutations", c.mutations},
-                                      {"cpu_seconds", c.cpu_seconds},
-                                      {"error", c.error},
-                                      {"efficiency", c.efficiency()}});
+        json["contenders"].push_back(
+            {{"name", c.name}, {"mutations", c.mutations}, {"cpu_seconds", c.cpu_seconds}, {"error", c.error}});
     return json;
 }
 

@@ -109,9 +109,7 @@ struct TuningStatistics {
     struct Contender {
         std::string name;
         double mutations = 0, cpu_seconds = 0;
-        double error = 0;  // root mean square of the relative errors of 16 x 16 blocks, after that
-
-        double efficiency() const { return 1 / (error * error * cpu_seconds); }
+        double error = 0;  // root mean square of the relative errors of the race's cells, after that
     };
     std::vector<Contender> contenders;
     std::string winner;

@@ -1,8 +1,8 @@
 // Against converged images that other renderers made of real scenes (Mitsuba 0.6 and Tungsten). They lie in ../shared;
 // where that folder is not, the tests are skipped.
 //
-// Under the box filter a film of fewer pixels is the larger film's block means, so scenes are rendered at the size of the
-// blocks, several times, and their means are held against the reference's by Welch's t-test (replicates.h).
+// Under the box filter a film of fewer pixels is the larger film's block means, so scenes are rendered at the size of
+// the blocks, several times, and their means are held against the reference's by Welch's t-test (replicates.h).
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 
 #include "render/replicates.h"
 #include "scene/reader.h"
+#include "strategies/mix_file.h"
 
 namespace keyhole {
 namespace {
@@ -143,7 +144,8 @@ Replicates reference_blocks(const Image& image, const Case& c) {
     return r;
 }
 
-Replicates render_blocks(const Case& c, int width, int height) {
+// By the case's integrator, or by a mix.
+Replicates render_blocks(const Case& c, int width, int height, const std::string& mix = "") {
     const BoxFiltered box_filtered(shared / "scenes" / c.scene);
     ReaderOptions options;
     options.width = width;
@@ -151,8 +153,9 @@ Replicates render_blocks(const Case& c, int width, int height) {
     options.defines = c.defines;
     const auto scene = read_scene(box_filtered.file().string(), options).scene;
     RenderSettings settings;
-    settings.integrator = c.integrator;
-    settings.mutations_per_pixel = c.samples;
+    settings.integrator = mix.empty() ? c.integrator : Integrator::mmlt;
+    settings.mutations_per_pixel = mix.empty() ? c.samples : 3000;
+    if (!mix.empty()) settings.mix = builtin_mix(mix);
     settings.mix.lengths.max = c.max_length;
     Replicates replicates;
     for (int i = 0; i < runs; ++i) {
@@ -172,8 +175,11 @@ TEST_P(Reference, IsWhatIsRendered) {
     const fs::path file = shared / "reference" / (std::string(c.image) + ".exr");
     if (!fs::exists(file)) GTEST_SKIP() << "the independent images are not on this machine: no " << file;
     const Replicates reference = reference_blocks(read_image(file.string()), c);
-    const Replicates ours = render_blocks(c, reference.width, reference.height);
-    expect_agreement(ours, reference, sidak_level(family_level, static_cast<int>(std::size(cases))), c.image);
+    const double level = sidak_level(family_level, static_cast<int>(3 * std::size(cases)));
+    expect_agreement(render_blocks(c, reference.width, reference.height), reference, level, c.image);
+    for (const std::string mix : {"fused-all", "auto"})
+        expect_agreement(render_blocks(c, reference.width, reference.height, mix), reference, level,
+                         c.image + ("-" + mix));
 }
 
 INSTANTIATE_TEST_SUITE_P(Independent, Reference, testing::ValuesIn(cases), [](const auto& test) {
