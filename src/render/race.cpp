@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/process.h"
+#include "render/cell_errors.h"
 #include "render/chain_run.h"
 #include "strategies/cones_bind.h"
 #include "strategies/mix_variants.h"
@@ -47,7 +47,7 @@ Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
 // every replicate of every contender.
 int fine_cells(const Scene& scene) {
     const int pixels = std::min(scene.film().crop_width, scene.film().crop_height) / BlockGrid::usual_side;
-    return pixels >= most_fine ? most_fine : std::max(1, pixels);
+    return std::clamp(pixels, 1, most_fine);
 }
 
 bool applies(const MixStrategy& s, const Scene& scene, const Mix& pool, const Bootstrap& seeds) {
@@ -113,36 +113,6 @@ class Contender {
     std::unique_ptr<ChainRun> run_;
 };
 
-using Cells = std::vector<double>;
-
-// The light of the cells as each replicate has it, up to a factor. The b of a group is that of all replicates.
-std::vector<Cells> cell_means(const ReplicateRecord& record) {
-    std::vector<Cells> means;
-    for (std::size_t r = 0; r < record.blocks[0].size(); ++r) {
-        Cells sum(record.blocks[0][r].size());
-        bool has_chains = false;
-        for (std::size_t g = 0; g < record.blocks.size(); ++g) {
-            const double mutations = record.mutations[g][r];
-            if (!(mutations > 0)) continue;
-            has_chains = true;
-            RunningMean b;
-            for (const RunningMean& replicate : record.b[g]) b.merge(replicate);
-            for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += b.mean() * record.blocks[g][r][j] / mutations;
-        }
-        if (has_chains) means.push_back(std::move(sum));
-    }
-    return means;
-}
-
-// The blocks of `fine` x `fine` cells each.
-Cells blocks_of(const Cells& cells, std::size_t fine) {
-    constexpr std::size_t side = BlockGrid::usual_side;
-    Cells blocks(side * side);
-    for (std::size_t j = 0; j < cells.size(); ++j)
-        blocks[j / (side * fine) / fine * side + j % (side * fine) / fine] += cells[j];
-    return blocks;
-}
-
 class Race {
   public:
     Race(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
@@ -207,32 +177,6 @@ class Race {
         }
         std::stable_sort(field.begin(), field.end(),
                          [&](const auto& a, const auto& b) { return a->cost(length_) < b->cost(length_); });
-    }
-
-    static Cells mean_of(const std::vector<std::vector<Cells>>& contenders) {
-        Cells mean(contenders[0][0].size());
-        for (const std::vector<Cells>& replicates : contenders)
-            for (const Cells& r : replicates)
-                for (std::size_t j = 0; j < mean.size(); ++j)
-                    mean[j] += r[j] / static_cast<double>(replicates.size() * contenders.size());
-        return mean;
-    }
-
-    // Relative to the cells of `all`; dark ones count less.
-    static double squared_error(const std::vector<Cells>& replicates, const Cells& all) {
-        constexpr double dark = 0.05;  // of the image's mean
-        const auto n = static_cast<double>(replicates.size());
-        double mean = 0;
-        for (const double v : all) mean += v / static_cast<double>(all.size());
-        if (n < 2 || !(mean > 0)) return std::numeric_limits<double>::infinity();
-        double error = 0;
-        for (std::size_t j = 0; j < all.size(); ++j) {
-            double own = 0, square = 0;
-            for (const Cells& r : replicates) own += r[j] / n;
-            for (const Cells& r : replicates) square += (r[j] - own) * (r[j] - own);
-            error += square / (n * (n - 1)) / (all[j] * all[j] + dark * dark * mean * mean);
-        }
-        return error / static_cast<double>(all.size());
     }
 
     const Scene& scene_;
