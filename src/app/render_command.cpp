@@ -49,7 +49,7 @@ void print_strategies(const RenderStatistics& statistics) {
 void print_tuning(const TuningStatistics& t, bool verbose) {
     if (t.contenders.empty()) return;
     fmt::print("mix: {}, {} {} that raced for {} (CPU)\n", t.winner,
-               t.clear ? "the best of" : "with every move, as there was no clear winner among", t.contenders.size(),
+               t.clear ? "the best of" : "as there was no clear winner among", t.contenders.size(),
                format_duration(t.cpu_seconds));
     if (!verbose) return;
     for (const auto& c : t.contenders)

@@ -1,8 +1,21 @@
 #include "render/cell_errors.h"
 
+#include <cmath>
 #include <limits>
 
 namespace keyhole {
+namespace {
+
+std::size_t side_of(const Cells& cells) {
+    return static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(cells.size()))));
+}
+
+// Where cell j of a grid lies in the grid of `by` x `by` cells each.
+std::size_t coarser_index(std::size_t j, std::size_t side, std::size_t by) {
+    return j / side / by * (side / by) + j % side / by;
+}
+
+}  // namespace
 
 std::vector<Cells> cell_means(const ReplicateRecord& record) {
     std::vector<Cells> means;
@@ -22,12 +35,11 @@ std::vector<Cells> cell_means(const ReplicateRecord& record) {
     return means;
 }
 
-Cells blocks_of(const Cells& cells, std::size_t fine) {
-    constexpr std::size_t side = BlockGrid::usual_side;
-    Cells blocks(side * side);
-    for (std::size_t j = 0; j < cells.size(); ++j)
-        blocks[j / (side * fine) / fine * side + j % (side * fine) / fine] += cells[j];
-    return blocks;
+Cells coarser(const Cells& cells, std::size_t by) {
+    const std::size_t side = side_of(cells);
+    Cells sums(cells.size() / (by * by));
+    for (std::size_t j = 0; j < cells.size(); ++j) sums[coarser_index(j, side, by)] += cells[j];
+    return sums;
 }
 
 Cells mean_of(const std::vector<std::vector<Cells>>& runs) {
@@ -40,19 +52,22 @@ Cells mean_of(const std::vector<std::vector<Cells>>& runs) {
 }
 
 double squared_error(const std::vector<Cells>& replicates, const Cells& all) {
-    constexpr double dark = 0.05;  // of the image's mean
-    const auto n = static_cast<double>(replicates.size());
+    constexpr std::size_t parts = 4;
+    const auto n = static_cast<double>(replicates.size()), count = static_cast<double>(all.size());
     double mean = 0;
-    for (const double v : all) mean += v / static_cast<double>(all.size());
+    for (const double v : all) mean += v / count;
     if (n < 2 || !(mean > 0)) return std::numeric_limits<double>::infinity();
+    const std::size_t side = side_of(all), by = side / parts;
+    const Cells light = coarser(all, by);
     double error = 0;
     for (std::size_t j = 0; j < all.size(); ++j) {
         double own = 0, square = 0;
         for (const Cells& r : replicates) own += r[j] / n;
         for (const Cells& r : replicates) square += (r[j] - own) * (r[j] - own);
-        error += square / (n * (n - 1)) / (all[j] * all[j] + dark * dark * mean * mean);
+        const double expected = light[coarser_index(j, side, by)] / static_cast<double>(by * by);
+        error += square / (n * (n - 1)) / (expected * expected + mean * mean);
     }
-    return error / static_cast<double>(all.size());
+    return error / count;
 }
 
 }  // namespace keyhole

@@ -25,8 +25,8 @@ constexpr double largest_known_error = 0.5;  // of blocks, relative; what is see
 constexpr std::uint64_t mutations_of_pass = 64;  // of each chain
 constexpr int most_fine = 4;                     // cells of a block, a side
 
-// What a race without a clear result ends with: every move that there is, so that none that matters is missing.
-const std::string fallback = "fused-all";
+// What a race without a clear result ends with: the set that is far behind the best in no scene (docs/benchmarks.md).
+const std::string fallback = "fused-portal";
 
 // The chains of a part of the seeds, in order: they are in proportion to the target as all are.
 Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
@@ -168,7 +168,7 @@ class Race {
         for (const auto& contender : field) {
             cells.push_back(cell_means(contender->record()));
             blocks.emplace_back();
-            for (const Cells& replicate : cells.back()) blocks.back().push_back(blocks_of(replicate, fine));
+            for (const Cells& replicate : cells.back()) blocks.back().push_back(coarser(replicate, fine));
         }
         const Cells all_cells = mean_of(cells), all_blocks = mean_of(blocks);
         for (std::size_t c = 0; c < field.size(); ++c) {
@@ -205,7 +205,7 @@ const Contender& better(const std::vector<std::unique_ptr<Contender>>& field, co
     const auto found = std::find_if(field.begin(), field.end(), [&](const auto& c) { return c->name() == than; });
     if (found == field.end()) return first;
     const Contender& other = **found;
-    const bool is_better = first.known() && other.known() && first.cost(length) * factor < other.cost(length);
+    const bool is_better = first.known() && first.cost(length) * factor < other.cost(length);
     return is_better ? first : other;
 }
 

@@ -113,7 +113,7 @@ struct TuningStatistics {
     };
     std::vector<Contender> contenders;
     std::string winner;
-    bool clear = false;  // false: the race was too short to tell, and the winner is the mix with all moves
+    bool clear = false;  // false: the race was too short to tell, and the winner is what such races end with
     double mutations = 0, cpu_seconds = 0;  // of all
 };
 

@@ -8,26 +8,45 @@
 namespace keyhole {
 namespace {
 
-TEST(CellErrors, BlocksAreSumsOfTheirCells) {
-    constexpr std::size_t side = BlockGrid::usual_side, fine = 2;
-    Cells cells(side * fine * side * fine, 1.0);
-    cells[3 * side * fine + 5] += 10;  // row 3, column 5
-    const Cells blocks = blocks_of(cells, fine);
-    ASSERT_EQ(blocks.size(), side * side);
-    for (std::size_t j = 0; j < blocks.size(); ++j) EXPECT_EQ(blocks[j], j == 1 * side + 2 ? 14 : 4);
-    EXPECT_EQ(blocks_of(blocks, 1), blocks);
+TEST(CellErrors, CoarserCellsAreSums) {
+    Cells cells(32 * 32, 1.0);
+    cells[3 * 32 + 5] += 10;  // row 3, column 5
+    const Cells sums = coarser(cells, 2);
+    ASSERT_EQ(sums.size(), 256u);
+    for (std::size_t j = 0; j < sums.size(); ++j) EXPECT_EQ(sums[j], j == 1 * 16 + 2 ? 14 : 4);
+    EXPECT_EQ(coarser(sums, 1), sums);
 }
 
-// Two replicates, 1 and 3: their mean 2 has the squared standard error 1. Beside it a cell without light.
-TEST(CellErrors, AreStandardErrorsRelativeToTheImage) {
-    const std::vector<Cells> run = {{1, 0}, {3, 0}};
-    const Cells all = mean_of({run, {{2, 0}, {2, 0}, {2, 0}}});
-    EXPECT_DOUBLE_EQ(all[0], 2);
-    EXPECT_EQ(all[1], 0);
-    EXPECT_DOUBLE_EQ(squared_error(run, all), 0.5 * 1 / (4 + 0.05 * 0.05));
-    EXPECT_EQ(squared_error({{2, 0}, {2, 0}}, all), 0.0);
-    EXPECT_TRUE(std::isinf(squared_error({{2, 0}}, all)));
-    EXPECT_TRUE(std::isinf(squared_error(run, {0, 0})));
+// An 8 x 8 grid whose only light, in two replicates 4 and 12, lies in one cell: its mean 8 has the squared standard
+// error 16, the 2 x 2 cells about it have 2 on average, all cells 1/8.
+TEST(CellErrors, AreStandardErrorsRelativeToPartsOfTheImage) {
+    std::vector<Cells> run(2, Cells(64));
+    run[0][9] = 4;
+    run[1][9] = 12;
+    const std::vector<Cells> exact(3, [] {
+        Cells c(64);
+        c[9] = 8;
+        return c;
+    }());
+    const Cells all = mean_of({run, exact});
+    EXPECT_DOUBLE_EQ(all[9], 8);
+    EXPECT_DOUBLE_EQ(squared_error(run, all), 16 / (4 + 1.0 / 64) / 64);
+    EXPECT_EQ(squared_error(exact, all), 0.0);
+    EXPECT_TRUE(std::isinf(squared_error({all}, all)));
+    EXPECT_TRUE(std::isinf(squared_error(run, Cells(64))));
+}
+
+// Two runs of which one has seen a part of the light only, many times: it is not the better one.
+TEST(CellErrors, NoOneErrsByFindingMoreLight) {
+    std::vector<Cells> stuck, moves;
+    for (std::size_t r = 0; r < 8; ++r) {
+        stuck.emplace_back(256);
+        moves.emplace_back(256);
+        stuck.back()[r] = 64;
+        for (std::size_t i = 0; i < 16; ++i) moves.back()[r + 16 * i] += 4;
+    }
+    const Cells all = mean_of({stuck, moves});
+    EXPECT_LT(squared_error(moves, all), squared_error(stuck, all));
 }
 
 }  // namespace
