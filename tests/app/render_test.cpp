@@ -169,7 +169,7 @@ TEST_F(RenderCommand, FindsAMixAndWritesIt) {
     EXPECT_THAT(done.out, AllOf(HasSubstr("mix: "), HasSubstr("that raced for"), HasSubstr("wrote a.mix.toml")));
     const nlohmann::json report = json("a.json");
     const nlohmann::json& tuning = report["statistics"]["tuning"];
-    EXPECT_GE(tuning["contenders"].size(), 4u);
+    EXPECT_GE(tuning["contenders"].size(), 2u);
     EXPECT_GT(tuning["contenders"][0]["error"], 0);
     EXPECT_THAT(report["settings"]["mix"].get<std::string>(), HasSubstr("tuning = \"off\""));
     ASSERT_EQ(run({"render", "room.xml", "-o", "b.exr", "-n", "200", "--mix", "a.mix.toml"}).exit_code, 0);
