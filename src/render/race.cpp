@@ -87,9 +87,11 @@ class Contender {
     }
     const std::string& name() const { return name_; }
     MixVariant variant() const { return {name_, settings_.mix}; }
-    // Without the strategies that no state has suited so far: the scene does not require them.
-    MixVariant required() const {
+    // Without the strategies that no state has suited so far: the scene does not require them. Not so where surfaces
+    // have delta lobes, for which some are made: bright paths that are rare would find no move that suits them.
+    MixVariant required(const Scene& scene) const {
         MixVariant v = variant();
+        if (scene.requirements().bsdfs.delta) return v;
         const Diagnostics diagnostics = run_->diagnostics();
         Mix mix = v.mix;
         mix.strategies.clear();
@@ -236,7 +238,7 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const auto field = race.run(std::move(all), share_of_sets, fallback);
     report(field, result.statistics);
     const Contender& winner = better(field, fallback, worth_a_set, length);
-    MixVariant best = winner.required();
+    MixVariant best = winner.required(scene);
 
     std::vector<MixVariant> variants = neighbours_of(best);
     const double each =
