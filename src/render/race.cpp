@@ -87,20 +87,6 @@ class Contender {
     }
     const std::string& name() const { return name_; }
     MixVariant variant() const { return {name_, settings_.mix}; }
-    // Without the strategies that no state has suited so far: the scene does not require them. Not so where surfaces
-    // have delta lobes, for which some are made: bright paths that are rare would find no move that suits them.
-    MixVariant required(const Scene& scene) const {
-        MixVariant v = variant();
-        if (scene.requirements().bsdfs.delta) return v;
-        const Diagnostics diagnostics = run_->diagnostics();
-        Mix mix = v.mix;
-        mix.strategies.clear();
-        for (std::size_t i = 0; i < v.mix.strategies.size(); ++i)
-            if (diagnostics.strategies[i].proposals > 0) mix.strategies.push_back(v.mix.strategies[i]);
-        if (!contradiction(mix)) v.mix = std::move(mix);
-        return v;
-    }
-
     ReplicateRecord record() const { return run_->record(); }
     double mutations() const { return mutations_; }
     double seconds() const { return seconds_; }
@@ -238,7 +224,7 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const auto field = race.run(std::move(all), share_of_sets, fallback);
     report(field, result.statistics);
     const Contender& winner = better(field, fallback, worth_a_set, length);
-    MixVariant best = winner.required(scene);
+    MixVariant best = winner.variant();
 
     std::vector<MixVariant> variants = neighbours_of(best);
     const double each =
