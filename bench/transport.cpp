@@ -1,12 +1,11 @@
 // What a mutation is made of, on each of the project's own scenes: rays, charts, and whole steps of a chain.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-
 #include "own_scenes.h"
 #include "render/bootstrap.h"
 #include "render/chain_worker.h"
 #include "render/render.h"
+#include "strategies/with_unused.h"
 
 namespace keyhole {
 namespace {
@@ -61,18 +60,6 @@ void evaluate_chart(benchmark::State& state, const std::string& name) {
     for (auto _ : state) benchmark::DoNotOptimize(large.draw(drawn, rng));
 }
 
-// The mix with all others that fused-all has, at weight zero.
-Mix with_unused(const std::string& name) {
-    Mix mix = builtin_mix(name);
-    for (MixStrategy s : builtin_mix("fused-all").strategies) {
-        s.weight = 0;
-        const bool known = std::any_of(mix.strategies.begin(), mix.strategies.end(),
-                                       [&](const MixStrategy& other) { return other.label == s.label; });
-        if (!known) mix.strategies.push_back(std::move(s));
-    }
-    return mix;
-}
-
 // A worker and chains of a mix, as `keyhole render` has them.
 struct Run {
     Run(const Scene& scene, const Mix& mix, int chain_count) : layout(scene, max_length), techniques(every_technique) {
@@ -122,7 +109,8 @@ const bool added = [] {
         benchmark::RegisterBenchmark(("unoccluded/" + name).c_str(), cast<true>, name);
         benchmark::RegisterBenchmark(("chart_evaluate/" + name).c_str(), evaluate_chart, name);
         benchmark::RegisterBenchmark(("mutation/" + name).c_str(), mutate, name, builtin_mix("mmlt"));
-        benchmark::RegisterBenchmark(("mutation-unused/" + name).c_str(), mutate, name, with_unused("mmlt"));
+        benchmark::RegisterBenchmark(("mutation-unused/" + name).c_str(), mutate, name,
+                                     with_unused(builtin_mix("mmlt")));
         for (const std::string strategy : {"large-step", "small-step", "chart-swap"})
             benchmark::RegisterBenchmark((strategy + "/" + name).c_str(), propose, name, strategy);
     }

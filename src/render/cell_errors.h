@@ -17,11 +17,10 @@ Cells coarser(const Cells& cells, std::size_t by);
 // Over the replicates of each run, then over the runs.
 Cells mean_of(const std::vector<std::vector<Cells>>& runs);
 
-// Of the replicates' mean: the mean over cells of its squared standard error, relative to what the cells of one of 4 x
-// 4 parts of the image have on average by `all`. Not to the cells themselves: of these, `all` may know no more than
-// what is to be judged, and who alone found light somewhere would seem to err there. Parts darker than the
-// image's mean count less. Infinite
-// for fewer than two replicates, or if all is dark.
+// Of the replicates' mean: the mean over cells of its squared standard error, relative to what the cells of one of
+// 4 x 4 parts of the image have on average by `all`, and to the image's mean in darker parts. Not to the cells
+// themselves: of these, `all` may know no more than what is to be judged, and who alone found light somewhere would
+// seem to err there. Infinite for fewer than two replicates, or if all is dark.
 double squared_error(const std::vector<Cells>& replicates, const Cells& all);
 
 }  // namespace keyhole

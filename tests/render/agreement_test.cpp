@@ -65,6 +65,23 @@ const std::vector<MixCase>& exact_mixes() {
     return cases;
 }
 
+// The mix without each of its strategies.
+std::vector<MixCase> all_but_one(const std::string& name) {
+    const Mix whole = builtin_mix(name);
+    std::vector<MixCase> cases(whole.strategies.size(), {whole, 500});
+    for (std::size_t off = 0; off < cases.size(); ++off) {
+        cases[off].mix.name += "-without-" + whole.strategies[off].label;
+        cases[off].mix.strategies[off].weight = 0;
+    }
+    return cases;
+}
+std::vector<TransportCase> scenes_of_fused_chains() {
+    std::vector<TransportCase> cases;
+    for (const TransportCase& c : transport_cases())
+        if (c.scene == "three-planes" || c.scene == "glass-caustic") cases.push_back(c);
+    return cases;
+}
+
 // False-alarm level of the whole file.
 constexpr double family_level = 1e-3;
 
@@ -84,7 +101,8 @@ class Agrees : public testing::TestWithParam<TransportCase> {
     }
     double level() const {
         const std::size_t entries = 1 + exact_mixes().size() + path_space_moves().size();
-        return sidak_level(family_level, static_cast<int>(entries * transport_cases().size()));
+        const std::size_t fused = all_but_one("fused-all").size() * scenes_of_fused_chains().size();
+        return sidak_level(family_level, static_cast<int>(entries * transport_cases().size() + fused));
     }
     void expect_agreement_of(const std::vector<MixCase>& mixes) {
         for (const MixCase& mix : mixes) {
@@ -117,32 +135,9 @@ TEST_P(Agrees, EveryMix) { expect_agreement_of(exact_mixes()); }
 TEST_P(Agrees, EveryMoveInPathSpace) { expect_agreement_of(path_space_moves()); }
 
 // A fused chain without one of its strategies, whichever, has the same expectation.
-TEST(FusedChain, ExpectsTheSameWithoutAnyOneStrategy) {
-    const Mix fused = builtin_mix("fused-all");
-    const std::vector<TransportCase> cases = {{"three-planes", {{"hole", "0.3"}}},
-                                              {"glass-caustic", {{"light", "0.5"}}}};
-    constexpr int runs = 12;
-    for (const TransportCase& transport : cases) {
-        const auto scene = own_scene(transport, 12, 12);
-        RenderSettings settings;
-        settings.mix.lengths.max = 5;
-        settings.integrator = Integrator::bdpt;
-        settings.mutations_per_pixel = 1000;
-        const Replicates reference = render_replicates(*scene, settings, runs);
-        settings.integrator = Integrator::mmlt;
-        settings.mutations_per_pixel = 300;
-        for (std::size_t off = 0; off < fused.strategies.size(); ++off) {
-            settings.mix = fused;
-            settings.mix.strategies[off].weight = 0;
-            settings.mix.lengths.max = 5;
-            settings.mix.chain_count = 64;
-            settings.mix.bootstrap_samples = 40000;
-            expect_agreement(render_replicates(*scene, settings, runs), reference,
-                             sidak_level(family_level, static_cast<int>(cases.size() * fused.strategies.size())),
-                             transport.scene + "-without-" + fused.strategies[off].label);
-        }
-    }
-}
+class FusedChain : public Agrees {};
+
+TEST_P(FusedChain, ExpectsTheSameWithoutAnyOneStrategy) { expect_agreement_of(all_but_one("fused-all")); }
 
 // Sum over pixels of the squared differences of the means, each over its variance: about their number where both agree.
 double squared_differences(const Replicates& a, const Replicates& b) {
@@ -177,6 +172,7 @@ TEST(Rectification, OnlyExcludingFailuresIsBiased) {
     EXPECT_GT(squared_differences(with(Rectification::exclude), off), 800);
 }
 
+INSTANTIATE_TEST_SUITE_P(OwnScenes, FusedChain, testing::ValuesIn(scenes_of_fused_chains()), test_name_of_case);
 INSTANTIATE_TEST_SUITE_P(OwnScenes, Agrees, testing::ValuesIn(transport_cases()), test_name_of_case);
 
 }  // namespace
