@@ -22,7 +22,7 @@ namespace keyhole {
 namespace {
 
 constexpr int default_max_length = 12;
-constexpr int default_chains = 1024;
+constexpr int default_chains = 256;  // more have more start-up error in short renders (docs/benchmarks.md)
 constexpr std::int64_t default_bootstrap_samples = 262144;
 
 void check(bool valid, const char* message) {
