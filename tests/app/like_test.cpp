@@ -8,6 +8,7 @@ namespace keyhole {
 namespace {
 
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 class Like : public CommandTest {
@@ -26,7 +27,7 @@ class Like : public CommandTest {
             make({"render", "--like", source, "-o", "again.exr", "--threads", "1"});
             EXPECT_EQ(pixels("again.exr"), pixels("out.exr")) << source;
             EXPECT_EQ(json("again.json")["statistics"]["mutations"], json("out.json")["statistics"]["mutations"]);
-            EXPECT_EQ(json("again.json")["warnings"], json("out.json")["warnings"]);
+            EXPECT_THAT(json("again.json")["warnings"], IsEmpty());
         }
     }
 };
@@ -50,7 +51,7 @@ TEST_F(Like, MakesTheSameBits) {
 }
 
 TEST_F(Like, RepeatsWhatARunOfAGivenTimeHasMade) {
-    expect_the_same({"render", "room.xml", "--time", "300ms", "--bootstrap", "4096", "--size", "8x8"});
+    expect_the_same({"render", "room.xml", "--time", "300ms", "--bootstrap", "65536", "--size", "8x8"});
     expect_the_same({"render", "room.xml", "--time", "100ms", "-i", "bdpt", "--size", "8x8"});
 }
 

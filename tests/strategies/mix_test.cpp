@@ -39,6 +39,11 @@ TEST(BuiltinMixes, AreTheFilesOfMixesInCanonicalForm) {
                 HasSubstr("unknown mix 'mmmlt'; did you mean 'mmlt'? valid names: "));
 }
 
+TEST(BuiltinMixes, ThatWalkOnMoveAsThoseThatDoNot) {
+    for (const std::string name : {"mmlt", "rjmlt", "fused", "fused-geo", "fused-portal", "fused-all"})
+        EXPECT_EQ(builtin_mix(name + "-walk-on").strategies, builtin_mix(name).strategies) << name;
+}
+
 TEST(BuiltinMixes, MmltIsThePublishedMethodWithItsDefaults) {
     const Mix& mix = builtin_mix("mmlt");
     EXPECT_EQ(mix.target, TargetFunction::luminance);
