@@ -67,8 +67,8 @@ void print_errors(const ErrorStatistics& e, bool verbose) {
         "autocorrelation time of luminance {:.3g} mutations, of position {:.3g}; standard error of the image's "
         "mean {:.2g}\n",
         e.luminance.autocorrelation_time, e.position.autocorrelation_time, e.image_mean);
-    fmt::print("b rests on {} effective paths, the five largest carry {:.2g}% of it\n", format_count(e.effective_paths),
-               100 * e.heaviest_share);
+    fmt::print("independent samples are worth {} effective paths, the five largest carry {:.2g}% of the light\n",
+               format_count(e.effective_paths), 100 * e.heaviest_share);
 }
 
 void print_summary(const RenderOptions& options, const Json& report, const RenderStatistics& s) {

@@ -24,6 +24,7 @@ a picture of time against error; and one line of conclusion made from the figure
   target         what a path counts as
   chains         their number; their length is the rest of the time
   bootstrap      samples before the first mutation
+  starts         largest share of the chains that start from one of them
   max-length     longest paths: fewer are faster, and light is missing
   robust         watertight ray queries
 
@@ -151,6 +152,7 @@ std::vector<Knob> all_knobs(const Mix& mix) {
             key(mix, "target", "target", {"luminance", "max-channel"}),
             key(mix, "chains", "chains.count", {"64", "256", "1024", "4096"}),
             key(mix, "bootstrap", "bootstrap.samples", {"16384", "65536", "262144", "1048576"}),
+            key(mix, "starts", "bootstrap.most-starts", {"1", "0.1", "0.01"}),
             key(mix, "max-length", "lengths.max", lengths),
             {"robust", "off", {{"on", [](Mix&) {}, true}}}};
 }

@@ -1,8 +1,10 @@
 // Starting chains in proportion to the target, from independent weighted samples [Veach 1997, section 11.3.1].
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -35,6 +37,28 @@ inline std::vector<std::size_t> resample(std::span<const double> weights, std::s
     }
     indices.resize(count, last);
     return indices;
+}
+
+// The weights, of which the largest are cut to the level at which none is more than the share `most` of their sum. Where
+// fewer than 1 / most are above zero, these become equal. As they are with most = 1.
+inline std::vector<double> bounded_shares(std::span<const double> weights, double most) {
+    std::vector<double> sorted;
+    for (const double w : weights)
+        if (w > 0) sorted.push_back(w);
+    std::sort(sorted.begin(), sorted.end(), std::greater<>());
+    std::vector<double> rest(sorted.size() + 1);  // sums without the m largest, exact to rounding whatever those are
+    for (std::size_t m = sorted.size(); m-- > 0;) rest[m] = rest[m + 1] + sorted[m];
+    double level = sorted.empty() ? 0 : sorted.back();
+    // With the m largest at the level c, c = most (m c + rest).
+    for (std::size_t m = 0; m < sorted.size() && static_cast<double>(m) * most < 1; ++m) {
+        const double c = most * rest[m] / (1 - static_cast<double>(m) * most);
+        if (sorted[m] > c) continue;
+        level = c;
+        break;
+    }
+    std::vector<double> bounded(weights.begin(), weights.end());
+    for (double& w : bounded) w = std::min(w, level);
+    return bounded;
 }
 
 }  // namespace keyhole

@@ -24,26 +24,27 @@ inline ReplicatePart total(std::span<const ReplicatePart> parts) {
     return total;
 }
 
-// 1 / sqrt(1 - h), h = a replicate's share of the count: makes up for its having pulled the estimate towards itself
-// [MacKinnon and White 1985, Some heteroskedasticity-consistent covariance matrix estimators, HC2]. Infinite for a
-// replicate that has all of the count: there is nothing to compare it with.
-inline double leverage_factor(double share) {
-    return share < 1 ? 1 / std::sqrt(1 - share) : std::numeric_limits<double>::infinity();
+// 1 / sqrt(1 - sum of h^2), h = a replicate's share of the count: makes up for the replicates' having pulled the estimate
+// towards themselves. The same for all of them: one that found something heavy has many chains, and a factor of its own
+// (1 / sqrt(1 - h), as in [MacKinnon and White 1985], HC2) would blame it a second time. Infinite if one replicate has
+// all of the count: there is nothing to compare it with.
+inline double leverage_factor(std::span<const ReplicatePart> parts) {
+    const double all = total(parts).count;
+    double left = 1;
+    for (const ReplicatePart& part : parts) left -= part.count / all * (part.count / all);
+    return left > 0 ? 1 / std::sqrt(left) : std::numeric_limits<double>::infinity();
 }
 
 // How far each replicate moves the estimate. The sum of the squares estimates the variance of the estimate: without
 // bias where the variance of a replicate's sum is in proportion to its count, and with the relative error sqrt(2 / (R -
-// 1)) of R replicates of equal size. All are 0 where nothing is counted, infinite where one replicate has all of the
-// count.
+// 1)) of R replicates of equal size. All are 0 where nothing is counted, infinite where one replicate has all of it.
 inline std::vector<double> deviations(std::span<const ReplicatePart> parts) {
     std::vector<double> result(parts.size(), 0.0);
     const ReplicatePart all = total(parts);
     if (!(all.count > 0)) return result;
-    const double mean = all.sum / all.count;
-    for (std::size_t r = 0; r < parts.size(); ++r) {
-        const double factor = leverage_factor(parts[r].count / all.count);
+    const double mean = all.sum / all.count, factor = leverage_factor(parts);
+    for (std::size_t r = 0; r < parts.size(); ++r)
         result[r] = std::isinf(factor) ? factor : (parts[r].sum - mean * parts[r].count) / all.count * factor;
-    }
     return result;
 }
 

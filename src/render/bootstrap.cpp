@@ -59,21 +59,27 @@ std::size_t replicate_of(std::size_t sample, std::size_t samples, std::size_t re
     return sample * replicates / samples;
 }
 
-// The mean of the samples of each length (of all, where `lengths` holds zeros): given its length, a sample estimates b
-// of that length. Without the groups that found nothing.
+// No sample can add more to b than that share.
+constexpr double most_of_b = 0.01;
+
+// From the samples of each length (of all, where `lengths` holds zeros): given its length, a sample estimates b of that
+// length. Without the groups that found nothing.
 std::vector<ChainGroup> make_groups(const std::vector<double>& weights, const std::vector<std::uint16_t>& lengths,
                                     const PathLengths& range, std::size_t replicates) {
     std::vector<ChainGroup> groups(range.fixed ? range.max + 1 : 1);
+    std::vector<std::vector<double>> own(groups.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) own[lengths[i]].push_back(weights[i]);
     for (std::size_t g = 0; g < groups.size(); ++g) {
         groups[g].length = static_cast<int>(g);
         groups[g].b.resize(replicates);
+        groups[g].bridge = bridge_for(own[g], most_of_b);
     }
     for (std::size_t i = 0; i < weights.size(); ++i) {
         ChainGroup& group = groups[lengths[i]];
-        group.b[replicate_of(i, weights.size(), replicates)].add(weights[i]);
+        group.b[replicate_of(i, weights.size(), replicates)].add_sample(weights[i], group.bridge);
         group.largest.add(weights[i]);
     }
-    std::erase_if(groups, [](const ChainGroup& group) { return !(group.mean_b() > 0); });
+    std::erase_if(groups, [](const ChainGroup& group) { return !(group.all().b() > 0); });
     return groups;
 }
 
@@ -88,17 +94,17 @@ std::vector<std::size_t> share_chains(const std::vector<ChainGroup>& groups, std
     std::vector<std::size_t> counts(groups.size(), 1);
     if (groups.empty()) return counts;
     std::vector<double> shares;
-    for (const ChainGroup& group : groups) shares.push_back(group.mean_b());
+    for (const ChainGroup& group : groups) shares.push_back(group.all().b());
     for (const std::size_t g : resample(shares, chains - groups.size(), 0.5)) ++counts[g];
     return counts;
 }
 
 }  // namespace
 
-double ChainGroup::mean_b() const {
-    RunningMean all;
-    for (const RunningMean& replicate : b) all.merge(replicate);
-    return all.mean();
+Normalization ChainGroup::all() const {
+    Normalization all;
+    for (const Normalization& replicate : b) all.merge(replicate);
+    return all;
 }
 
 Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, TechniqueDistribution& techniques,
@@ -134,7 +140,7 @@ Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, Tech
         std::vector<double> own = weights;
         for (std::size_t i = 0; i < own.size(); ++i)
             if (lengths[i] != group.length) own[i] = 0;
-        for (const std::size_t i : resample(own, counts[g], rng.uniform())) {
+        for (const std::size_t i : resample(bounded_shares(own, mix.most_starts), counts[g], rng.uniform())) {
             draw(worker, i);
             const auto replicate = static_cast<std::uint32_t>(replicate_of(i, own.size(), replicates));
             group.seeds.push_back({worker.state, replicate});

@@ -7,7 +7,7 @@
 
 #include "base/rng.h"
 #include "chain/largest.h"
-#include "chain/running_mean.h"
+#include "chain/normalization.h"
 #include "strategies/mix_states.h"
 
 namespace keyhole {
@@ -40,11 +40,12 @@ struct ChainSeed {
 // chain keeps its own. The image is the sum over groups of b / (mutations of the group) times the group's film.
 struct ChainGroup {
     int length = 0;                // of its paths; 0: any
-    std::vector<RunningMean> b;    // by replicate: integral of f* over raster area, of these paths
-    Largest<heaviest> largest;     // of the samples that b is the mean of
+    BridgeFunction bridge;
+    std::vector<Normalization> b;  // by replicate: integral of f* over raster area, of these paths
+    Largest<heaviest> largest;     // of the samples' weights
     std::vector<ChainSeed> seeds;  // one per chain, in proportion to the target
 
-    double mean_b() const;  // of all replicates
+    Normalization all() const;  // of all replicates
 };
 
 struct Bootstrap {

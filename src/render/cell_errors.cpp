@@ -26,9 +26,9 @@ std::vector<Cells> cell_means(const ReplicateRecord& record) {
             const double mutations = record.mutations[g][r];
             if (!(mutations > 0)) continue;
             has_chains = true;
-            RunningMean b;
-            for (const RunningMean& replicate : record.b[g]) b.merge(replicate);
-            for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += b.mean() * record.blocks[g][r][j] / mutations;
+            Normalization b;
+            for (const Normalization& replicate : record.b[g]) b.merge(replicate);
+            for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += b.b() * record.blocks[g][r][j] / mutations;
         }
         if (has_chains) means.push_back(std::move(sum));
     }

@@ -34,12 +34,6 @@ void report_strategy(const std::string& name, const StrategyCounts& counts, Rend
             fmt::format("{} proposals of '{}' were NaN or infinite and were rejected", non_finite, name));
 }
 
-RunningMean merged(const std::vector<RunningMean>& replicates) {
-    RunningMean all;
-    for (const RunningMean& mean : replicates) all.merge(mean);
-    return all;
-}
-
 }  // namespace
 
 ChainRun::ChainRun(const Scene& scene, const RenderSettings& settings, const CoordinateLayout& layout,
@@ -93,7 +87,7 @@ void ChainRun::splat_held(Sink& sink, std::size_t group, std::size_t replicate) 
 }
 
 Image ChainRun::develop() const {
-    const Cells<RunningMean> b = estimate_b();
+    const ReplicateErrors errors(estimate_b(), mutations());
     Image image(scene_.film().crop_width, scene_.film().crop_height);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         MetropolisFilm sum(scene_.film());
@@ -103,7 +97,7 @@ Image ChainRun::develop() const {
             for (const SharedMetropolisFilm& film : replicate_films_[g]) sum.merge(film);
         FilmSink sink{sum};
         splat_held(sink, g);
-        const Image part = sum.develop(merged(b[g]).mean() / mutations(g));
+        const Image part = sum.develop(errors.b(g) / errors.mutations(g));
         for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] += part.rgb[i];
     }
     return image;
@@ -138,8 +132,8 @@ void ChainRun::report(const std::vector<const MixStrategy*>& strategies, RenderS
     }
 }
 
-ChainRun::Cells<RunningMean> ChainRun::estimate_b() const {
-    Cells<RunningMean> b;
+ChainRun::Cells<Normalization> ChainRun::estimate_b() const {
+    Cells<Normalization> b;
     for (const ChainGroup& group : groups_) b.push_back(group.b);
     for (const RunningChain& c : chains_) b[c.group][c.replicate].merge(c.b);
     return b;
@@ -158,12 +152,11 @@ double ChainRun::chains_of(std::size_t group) const {
 
 void ChainRun::report_b(RenderStatistics& statistics) const {
     const double area = RasterWindow(scene_.film()).area();
-    const Cells<RunningMean> b = estimate_b();
+    const ReplicateErrors errors(estimate_b(), mutations());
     double variance = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        const RunningMean all = merged(b[g]);
         const auto chains = static_cast<std::uint64_t>(chains_of(g));
-        const LengthStatistics s{groups_[g].length, chains, all.mean() / area, all.standard_error() / area};
+        const LengthStatistics s{groups_[g].length, chains, errors.b(g) / area, errors.error_of_b(g) / area};
         statistics.b += s.b;
         variance += s.b_standard_error * s.b_standard_error;
         if (s.length > 0) statistics.lengths.push_back(s);

@@ -42,8 +42,7 @@ class ChainRun {
 
     template <class Sink>
     void splat_held(Sink& sink, std::size_t group, std::size_t replicate = every) const;
-    // From the bootstrap's samples and the independent proposals of the chains.
-    Cells<RunningMean> estimate_b() const;
+    Cells<Normalization> estimate_b() const;
     Cells<double> mutations() const;
     double chains_of(std::size_t group) const;
     double mutations(std::size_t group) const { return chains_of(group) * static_cast<double>(done_); }

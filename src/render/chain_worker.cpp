@@ -31,6 +31,7 @@ std::vector<RunningChain> start_chains(std::vector<ChainGroup>& groups, std::uin
             const Rng rng(seed, stream(StreamUse::chain, chains.size()));
             chains.push_back({Chain<PssState>(std::move(start.state)),
                               rng,
+                              groups[g].bridge,
                               {},
                               {},
                               0,
@@ -94,7 +95,7 @@ void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Sink& 
     for (std::uint64_t i = 0; i < mutations;) {
         const bool excludes = running.redraws < most_redraws_;
         const StepOutcome outcome = running.chain.step(mixture, running.rng, sink, diagnostics, excludes);
-        if (!outcome.idle && independent_[outcome.strategy]) estimate_b(running, outcome);
+        if (!outcome.idle && independent_[outcome.strategy]) add_sample(running, outcome);
         if (outcome.excluded) {
             ++running.redraws;
             continue;
@@ -105,11 +106,11 @@ void ChainWorker::advance(RunningChain& running, std::uint64_t mutations, Sink& 
     }
 }
 
-void ChainWorker::estimate_b(RunningChain& running, const StepOutcome& outcome) {
+void ChainWorker::add_sample(RunningChain& running, const StepOutcome& outcome) {
     const bool failed = outcome.failure != Failure::none || outcome.first_failure != Failure::none;
-    const double b = failed ? 0 : estimator_.estimate(running.chain.proposed(outcome));
-    running.b.add(b);
-    largest[running.group].add(b);
+    const double w = failed ? 0 : estimator_.estimate(running.chain.proposed(outcome));
+    running.b.add_sample(w, running.bridge);
+    largest[running.group].add(w);
 }
 
 void ChainWorker::exchange(RunningChain& a, RunningChain& b, Rng& rng) {
@@ -134,6 +135,8 @@ Observables ChainWorker::observables(const PssState& state) const {
 void ChainWorker::observe(RunningChain& running, const StepOutcome& outcome) {
     const Observables now = observables(running.chain.current());
     running.states.add(now);
+    evaluator->find_technique(running.chain.current(), running.rng);
+    running.b.add_state(estimator_.estimate(running.chain.current()), running.bridge);
     if (outcome.idle) return;
     // The other end of the jump. A proposal of probability zero may have no luminance, and does not count.
     const Observables other = outcome.accepted         ? observables(running.chain.previous(outcome))

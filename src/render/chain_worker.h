@@ -4,7 +4,7 @@
 #include "base/phase.h"
 #include "chain/metropolis.h"
 #include "chain/mixing.h"
-#include "chain/running_mean.h"
+#include "chain/normalization.h"
 #include "render/block_sums.h"
 #include "render/bootstrap.h"
 #include "render/film.h"
@@ -26,8 +26,9 @@ inline constexpr Observables jump_units = {0x1p-20, 0x1p-28, 0x1p-28};
 struct RunningChain {
     Chain<PssState> chain;
     Rng rng;
-    RunningMean b;             // of its group, estimated by its independent proposals
-    ObservableMoments states;  // of every sixteenth state
+    BridgeFunction bridge;     // of its group
+    Normalization b;           // of its group, by its independent proposals and every sixteenth state
+    ObservableMoments states;  // the same states
     std::uint64_t steps = 0;
     int redraws = 0;              // since the last step, of those that were excluded
     std::uint32_t group = 0;      // see ChainGroup
@@ -88,7 +89,7 @@ class ChainWorker {
     std::vector<MetropolisFilm> films;  // by group
     BlockGrid grid;
     std::vector<std::vector<BlockSums>> blocks;  // by group and replicate
-    std::vector<Largest<heaviest>> largest;      // by group: estimates of b by independent proposals
+    std::vector<Largest<heaviest>> largest;      // by group: weights of independent proposals
     Diagnostics diagnostics;
     StrategyCounts exchanges;
     std::vector<ObservableJumps> jumps;  // by strategy, of every sixteenth proposal
@@ -99,14 +100,14 @@ class ChainWorker {
     void with_sink(const RunningChain& running, const Body& body);
     template <class Sink>
     void advance(RunningChain& running, std::uint64_t mutations, Sink& sink);
-    // From the proposal of an independent strategy.
-    void estimate_b(RunningChain& running, const StepOutcome& outcome);
+    // The proposal of an independent strategy.
+    void add_sample(RunningChain& running, const StepOutcome& outcome);
     void observe(RunningChain& running, const StepOutcome& outcome);
     Observables observables(const PssState& state) const;
 
     ReplicateFilms* replicate_films_;
     int most_redraws_;
-    std::vector<char> independent_;  // of each strategy: whether its proposals estimate b
+    std::vector<char> independent_;  // of each strategy: whether its proposals are samples for b
     LargeStep estimator_;
     std::optional<ChartExchange> exchange_;
 };

@@ -7,8 +7,8 @@ namespace {
 
 // Limits beyond which a run is warned about. Renders of the project's scenes that are not hard keep a distance of a
 // factor of three to the first two, and of 1.6 (short runs) to 3 to the last.
-constexpr double fewest_effective_paths = 100;  // b is known to 10%
-constexpr double most_of_heaviest = 0.2;        // of b, by the five largest samples
+constexpr double fewest_effective_paths = 100;
+constexpr double most_of_heaviest = 0.2;        // of the light, by the five largest samples
 constexpr double most_disagreeing = 0.2;        // of the light
 
 std::vector<float> block_means(const ReplicateRecord& record, const ReplicateErrors& errors, std::size_t g,
@@ -101,16 +101,17 @@ double report_mixing(const ReplicateRecord& record, RenderStatistics& statistics
     return mixing_bound(variance.position, mean_square_jump(jumps, record.window).position, steps).autocorrelation_time;
 }
 
-// How much of b its largest samples carry, and how many samples of equal size would make an estimate as rough.
+// How much of the light the independent samples of largest weight carry, and how many of equal weight would know its
+// amount as well.
 void report_heavy_paths(const ReplicateRecord& record, ErrorStatistics& result) {
     double sum = 0, squares = 0;
     Largest<heaviest> largest;
     for (std::size_t g = 0; g < record.b.size(); ++g) {
-        RunningMean b;
-        for (const RunningMean& replicate : record.b[g]) b.merge(replicate);
-        const double n = static_cast<double>(b.count());
-        sum += b.mean();
-        squares += (b.variance() * (n - 1) / n + b.mean() * b.mean()) / n;
+        RunningMean weights;
+        for (const Normalization& replicate : record.b[g]) weights.merge(replicate.weights);
+        const double n = static_cast<double>(weights.count()), mean = weights.mean();
+        sum += mean;
+        squares += (weights.variance() * (n - 1) / n + mean * mean) / n;
         for (const double w : record.largest[g].values()) largest.add(w / n);
     }
     result.effective_paths = sum * sum / squares;
@@ -121,9 +122,9 @@ void warn_of_heavy_paths(RenderStatistics& statistics) {
     const ErrorStatistics& e = statistics.errors;
     if (e.effective_paths >= fewest_effective_paths && e.heaviest_share <= most_of_heaviest) return;
     statistics.warnings.push_back(
-        fmt::format("the image's brightness rests on few paths: the {} of largest weight carry {:.0f}% of b, and b is "
-                    "as uncertain as "
-                    "with {:.0f} paths of equal weight; light may be missing or too bright. A longer bootstrap "
+        fmt::format("the light was found by few paths: of all independent samples, the {} of largest weight carry "
+                    "{:.0f}% of it, and all together tell as much of it as {:.0f} paths of equal weight; light may be "
+                    "missing or too bright. A longer bootstrap "
                     "(--set bootstrap.samples=...), more large steps (--set large-step.weight=...) or another mix "
                     "finds more of them",
                     heaviest, 100 * e.heaviest_share, e.effective_paths));

@@ -13,7 +13,7 @@ struct ReplicateRecord {
     explicit ReplicateRecord(const RasterWindow& w) : window(w) {}
 
     RasterWindow window;
-    std::vector<std::vector<RunningMean>> b;  // from the bootstrap and from the chains
+    std::vector<std::vector<Normalization>> b;  // from the bootstrap and from the chains
     std::vector<std::vector<double>> mutations;
     std::vector<std::vector<BlockSums>> blocks;  // with what the chains still hold
     std::vector<std::vector<ObservableMoments>> states;

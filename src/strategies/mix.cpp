@@ -122,6 +122,11 @@ std::vector<MixField> make_fields() {
             P::integer("samples", 0, fewest_samples, many, "independent paths, from which the chains start")
                 .or_word("auto"),
             [](auto& m) -> auto& { return m.bootstrap_samples; }),
+        field(
+            "bootstrap",
+            P::number("most-starts", 1, 1e-6, 1,
+                      "largest share of the chains that start from one path; below 1 less noise and a bias of the start"),
+            [](auto& m) -> auto& { return m.most_starts; }),
     };
 }
 

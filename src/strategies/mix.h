@@ -46,6 +46,7 @@ struct Mix {
     int exchange_every = 0;         // mutations between exchanges of paths between chains; 0: never
     std::int64_t chain_length = 0;  // mutations of each chain, where the render is given neither a time nor a number
     std::int64_t bootstrap_samples = 0;
+    double most_starts = 1;  // largest share of the chains that start from one of them
     // Whether the render first finds out which of the strategies to use, how often, and with which sizes (render/race.h).
     enum class Tuning { off, race } tuning = Tuning::off;
     std::vector<MixStrategy> strategies;

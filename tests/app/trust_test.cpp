@@ -73,7 +73,7 @@ TEST_F(Trust, ARareStrongPathThatTheMixCannotReachInTimeIsFound) {
                                    "16384", "--set", "large-step.weight=0.02", "--seed", std::to_string(seed), "-q"});
         ASSERT_EQ(done.exit_code, 0) << done.err;
         wrong += std::abs(mean_luminance("a.json") / truth - 1) > 0.1;
-        const bool warned = done.err.find("brightness rests on few paths") != std::string::npos ||
+        const bool warned = done.err.find("light was found by few paths") != std::string::npos ||
                             done.err.find("disagree more than their noise explains") != std::string::npos;
         said += warned;
         EXPECT_EQ(json("a.json")["warnings"].empty(), !warned);

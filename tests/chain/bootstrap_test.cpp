@@ -75,6 +75,34 @@ TEST(Resample, RefusesWeightsThatMakeNoDistribution) {
     EXPECT_THROW(resample(zeros, 1, 0), std::invalid_argument);
 }
 
+TEST(BoundedShares, CutTheLargestToTheShare) {
+    EXPECT_EQ(bounded_shares(std::vector<double>{1, 0, 2, 3}, 1), (std::vector<double>{1, 0, 2, 3}));
+    EXPECT_EQ(bounded_shares(std::vector<double>{1, 0, 2, 3}, 0.5), (std::vector<double>{1, 0, 2, 3}));
+    EXPECT_EQ(bounded_shares(std::vector<double>{1, 0, 2, 9}, 0.5), (std::vector<double>{1, 0, 2, 3}));
+    EXPECT_EQ(bounded_shares(std::vector<double>{0, 0}, 0.1), (std::vector<double>{0, 0}));
+    // Too few for the share.
+    EXPECT_EQ(bounded_shares(std::vector<double>{4, 0, 2, 9}, 0.3), (std::vector<double>{2, 0, 2, 2}));
+}
+
+TEST(BoundedShares, LeaveTheOthersAsTheyAre) {
+    Rng random(4, 0);
+    for (int trial = 0; trial < 200; ++trial) {
+        std::vector<double> weights(50 + random.below(100));
+        for (double& w : weights) w = random.uniform() < 0.2 ? 0 : std::exp(15 * random.uniform());
+        const double most = 0.05 + 0.3 * random.uniform();  // enough are above zero
+        const std::vector<double> bounded = bounded_shares(weights, most);
+        double sum = 0;
+        for (const double w : bounded) sum += w;
+        const double level = *std::max_element(bounded.begin(), bounded.end());
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            ASSERT_TRUE(bounded[i] == weights[i] || (bounded[i] == level && level < weights[i]));
+        if (level < *std::max_element(weights.begin(), weights.end()))
+            ASSERT_NEAR(level / (most * sum), 1, 1e-12);
+        else
+            ASSERT_LE(level, most * sum * (1 + 1e-12));
+    }
+}
+
 TEST(RunningMean, HasTheMomentsOfItsSamples) {
     RunningMean mean;
     EXPECT_EQ(mean.count(), 0u);

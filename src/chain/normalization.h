@@ -1,0 +1,56 @@
+// The normalisation b of a chain's target, by bridge sampling [Meng and Wong 1996, Simulating ratios of normalizing
+// constants via a simple identity].
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "chain/running_mean.h"
+
+namespace keyhole {
+
+// a(x) = c / (c + w(x)) for some c > 0, where w = C / p is the weight that x would have as an independent sample.
+struct BridgeFunction {
+    double scale = 1;  // c
+    double operator()(double w) const { return scale / (scale + w); }
+};
+
+// Independent samples of weight w, 0 for those that failed, have the mean b. Where few of them carry much of the light,
+// that mean is rough. The density of a chain's states is C / b, so for any function a of the state as well
+//     b = E_p[w a] / E_chain[a].
+// With BridgeFunction no sample counts as more than c: what the heavy ones carry is told by the share of its states that
+// the chain has there. Consistent, whatever c is; not unbiased.
+struct Normalization {
+    RunningMean weights;  // w of the samples
+    RunningMean bridged;  // w a
+    RunningMean visited;  // a of the chain's states
+
+    void add_sample(double w, const BridgeFunction& a) {
+        weights.add(w);
+        bridged.add(w * a(w));
+    }
+    void add_state(double w, const BridgeFunction& a) { visited.add(a(w)); }
+    void merge(const Normalization& other) {
+        weights.merge(other.weights);
+        bridged.merge(other.bridged);
+        visited.merge(other.visited);
+    }
+
+    // By the samples alone as long as there are no states.
+    double b() const { return visited.count() ? bridged.mean() / visited.mean() : weights.mean(); }
+};
+
+// The function by which no sample can count as more than about the share `most` of the sum of all: b is then known at
+// least as well as by 1 / most samples of equal weight, as far as the samples go. It is near 1 for all where none comes
+// near that share: then b is the mean of the samples, and the chain's noise does not enter.
+inline BridgeFunction bridge_for(std::span<const double> weights, double most) {
+    RunningMean plain, bounded;
+    for (const double w : weights) plain.add(w);
+    BridgeFunction a{most * static_cast<double>(weights.size()) * plain.mean()};
+    // Once more without what single samples have added: any of them can be larger than all the others.
+    for (const double w : weights) bounded.add(w * a(w));
+    a.scale = most * static_cast<double>(weights.size()) * bounded.mean();
+    return a;
+}
+
+}  // namespace keyhole
