@@ -63,8 +63,7 @@ TEST(Race, EndsInTheSameWayEachTime) {
 TEST(Race, KeepsToThePool) {
     const auto scene = own_scene("cornell-box", 32, 32);
     RenderSettings settings = automatic(200);
-    apply_settings(settings.mix,
-                   {{"bidirectional.weight", "0", ""}, {"lens-geo.weight", "0", ""}, {"small-step.s1", "1e-9", ""}});
+    apply_settings(settings.mix, {{"lens-geo.weight", "0", ""}, {"small-step.s1", "1e-9", ""}});
     const RenderResult result = render(*scene, settings);
     std::vector<std::string> names;
     for (const auto& c : result.statistics.tuning->contenders) names.push_back(c.name);
