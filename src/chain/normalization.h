@@ -2,7 +2,6 @@
 // constants via a simple identity].
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 #include "chain/running_mean.h"
@@ -40,16 +39,15 @@ struct Normalization {
     double b() const { return visited.count() ? bridged.mean() / visited.mean() : weights.mean(); }
 };
 
-// The function by which no sample can count as more than about the share `most` of the sum of all: b is then known at
-// least as well as by 1 / most samples of equal weight, as far as the samples go. It is near 1 for all where none comes
-// near that share: then b is the mean of the samples, and the chain's noise does not enter.
+// The function by which no sample counts as more than about `most` times the mean of all. It is near 1 for all where none
+// comes near that: then b is the mean of the samples, and the chain's noise does not enter.
 inline BridgeFunction bridge_for(std::span<const double> weights, double most) {
     RunningMean plain, bounded;
     for (const double w : weights) plain.add(w);
-    BridgeFunction a{most * static_cast<double>(weights.size()) * plain.mean()};
+    BridgeFunction a{most * plain.mean()};
     // Once more without what single samples have added: any of them can be larger than all the others.
     for (const double w : weights) bounded.add(w * a(w));
-    a.scale = most * static_cast<double>(weights.size()) * bounded.mean();
+    a.scale = most * bounded.mean();
     return a;
 }
 

@@ -59,8 +59,9 @@ std::size_t replicate_of(std::size_t sample, std::size_t samples, std::size_t re
     return sample * replicates / samples;
 }
 
-// No sample can add more to b than that share.
-constexpr double most_of_b = 0.01;
+// No sample counts for more than that many of mean weight: a hundredth of those in a usual bootstrap. Where the chains
+// are slow, far fewer would leave too much to them.
+constexpr double most_of_sample = 2000;
 
 // From the samples of each length (of all, where `lengths` holds zeros): given its length, a sample estimates b of that
 // length. Without the groups that found nothing.
@@ -72,7 +73,7 @@ std::vector<ChainGroup> make_groups(const std::vector<double>& weights, const st
     for (std::size_t g = 0; g < groups.size(); ++g) {
         groups[g].length = static_cast<int>(g);
         groups[g].b.resize(replicates);
-        groups[g].bridge = bridge_for(own[g], most_of_b);
+        groups[g].bridge = bridge_for(own[g], most_of_sample);
     }
     for (std::size_t i = 0; i < weights.size(); ++i) {
         ChainGroup& group = groups[lengths[i]];

@@ -71,7 +71,7 @@ TEST(Normalization, KnowsWhatSamplesHaveNotFound) {
         Rng random(2, run);
         std::vector<double> weights(n);
         for (double& w : weights) w = weight(draw(density, 1, random));
-        const BridgeFunction a = bridge_for(weights, 1e-2);
+        const BridgeFunction a = bridge_for(weights, 100);
         Normalization b;
         for (const double w : weights) b.add_sample(w, a);
         for (int i = 0; i < n; ++i) b.add_state(weight(draw(target, exact_b, random)), a);
@@ -88,7 +88,7 @@ TEST(Normalization, IsTheMeanWhereNoSampleIsHeavy) {
     Rng random(3, 0);
     std::vector<double> weights(10000);
     for (double& w : weights) w = random.uniform() < 0.5 ? 0 : random.uniform();
-    const BridgeFunction a = bridge_for(weights, 1e-2);
+    const BridgeFunction a = bridge_for(weights, 100);
     Normalization b;
     for (const double w : weights) b.add_sample(w, a);
     b.add_state(0.9, a);
