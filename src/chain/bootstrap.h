@@ -39,8 +39,8 @@ inline std::vector<std::size_t> resample(std::span<const double> weights, std::s
     return indices;
 }
 
-// The weights, of which the largest are cut to the level at which none is more than the share `most` of their sum. Where
-// fewer than 1 / most are above zero, these become equal. As they are with most = 1.
+// The weights, of which the largest are cut to the level at which none is more than the share `most` of their sum.
+// Where fewer than 1 / most are above zero, these become equal. As they are with most = 1.
 inline std::vector<double> bounded_shares(std::span<const double> weights, double most) {
     std::vector<double> sorted;
     for (const double w : weights)

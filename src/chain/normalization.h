@@ -17,8 +17,8 @@ struct BridgeFunction {
 // Independent samples of weight w, 0 for those that failed, have the mean b. Where few of them carry much of the light,
 // that mean is rough. The density of a chain's states is C / b, so for any function a of the state as well
 //     b = E_p[w a] / E_chain[a].
-// With BridgeFunction no sample counts as more than c: what the heavy ones carry is told by the share of its states that
-// the chain has there. Consistent, whatever c is; not unbiased.
+// With BridgeFunction no sample counts as more than c: what the heavy ones carry is told by the share of its states
+// that the chain has there. Consistent, whatever c is; not unbiased.
 struct Normalization {
     RunningMean weights;  // w of the samples
     RunningMean bridged;  // w a
@@ -39,8 +39,8 @@ struct Normalization {
     double b() const { return visited.count() ? bridged.mean() / visited.mean() : weights.mean(); }
 };
 
-// The function by which no sample counts as more than about `most` times the mean of all. It is near 1 for all where none
-// comes near that: then b is the mean of the samples, and the chain's noise does not enter.
+// The function by which no sample counts as more than about `most` times the mean of all. It is near 1 for all where
+// none comes near that: then b is the mean of the samples, and the chain's noise does not enter.
 inline BridgeFunction bridge_for(std::span<const double> weights, double most) {
     RunningMean plain, bounded;
     for (const double w : weights) plain.add(w);

@@ -24,10 +24,10 @@ inline ReplicatePart total(std::span<const ReplicatePart> parts) {
     return total;
 }
 
-// 1 / sqrt(1 - sum of h^2), h = a replicate's share of the count: makes up for the replicates' having pulled the estimate
-// towards themselves. The same for all of them: one that found something heavy has many chains, and a factor of its own
-// (1 / sqrt(1 - h), as in [MacKinnon and White 1985], HC2) would blame it a second time. Infinite if one replicate has
-// all of the count: there is nothing to compare it with.
+// 1 / sqrt(1 - sum of h^2), h = a replicate's share of the count: makes up for the replicates' having pulled the
+// estimate towards themselves. The same for all of them: one that found something heavy has many chains, and a factor
+// of its own (1 / sqrt(1 - h), as in [MacKinnon and White 1985], HC2) would blame it a second time. Infinite if one
+// replicate has all of the count: there is nothing to compare it with.
 inline double leverage_factor(std::span<const ReplicatePart> parts) {
     const double all = total(parts).count;
     double left = 1;

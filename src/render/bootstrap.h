@@ -39,7 +39,7 @@ struct ChainSeed {
 // Chains that share a target and its normalisation: all chains where lengths are free, those of one length where each
 // chain keeps its own. The image is the sum over groups of b / (mutations of the group) times the group's film.
 struct ChainGroup {
-    int length = 0;                // of its paths; 0: any
+    int length = 0;  // of its paths; 0: any
     BridgeFunction bridge;
     std::vector<Normalization> b;  // by replicate: integral of f* over raster area, of these paths
     Largest<heaviest> largest;     // of the samples' weights

@@ -8,8 +8,8 @@ namespace {
 // Limits beyond which a run is warned about. Renders of the project's scenes that are not hard keep a distance of a
 // factor of three to the first two, and of 1.6 (short runs) to 3 to the last.
 constexpr double fewest_effective_paths = 100;
-constexpr double most_of_heaviest = 0.2;        // of the light, by the five largest samples
-constexpr double most_disagreeing = 0.2;        // of the light
+constexpr double most_of_heaviest = 0.2;  // of the light, by the five largest samples
+constexpr double most_disagreeing = 0.2;  // of the light
 
 std::vector<float> block_means(const ReplicateRecord& record, const ReplicateErrors& errors, std::size_t g,
                                std::size_t r) {

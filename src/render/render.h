@@ -100,8 +100,8 @@ struct ErrorStatistics {
     // Share of the light in blocks where replicates disagree more than their own noise explains; negative: the run was
     // too short to know.
     double disagreeing_light = -1;
-    // Of all independent samples: how many of equal weight would have as small an error of their mean, and what share of
-    // their sum the five largest have.
+    // Of all independent samples: how many of equal weight would have as small an error of their mean, and what share
+    // of their sum the five largest have.
     double effective_paths = 0, heaviest_share = 0;
 };
 
@@ -126,7 +126,8 @@ struct RenderStatistics {
     std::uint64_t rays = 0;
     double seconds_bootstrap = 0, seconds_render = 0, cpu_seconds = 0;  // the first with tuning
     // Integral of f* over the area of the crop window: the mean luminance of the image, where the mix does not say
-    // another target. By bridge sampling (chain/normalization.h); its error by the replicates, infinite if there is one.
+    // another target. By bridge sampling (chain/normalization.h); its error by the replicates, infinite if there is
+    // one.
     double b = 0, b_standard_error = 0;
     int chains = 0, threads = 0, max_length = 0;
     std::vector<StrategyStatistics> strategies;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double negligible = 0.01;  // share of b
 
-std::vector<ReplicatePart> parts_of(const std::vector<Normalization>& b, RunningMean Normalization::* mean) {
+std::vector<ReplicatePart> parts_of(const std::vector<Normalization>& b, RunningMean Normalization::*mean) {
     std::vector<ReplicatePart> parts;
     for (const Normalization& replicate : b) {
         const double count = static_cast<double>((replicate.*mean).count());

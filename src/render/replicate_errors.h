@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "chain/replicates.h"
 #include "chain/normalization.h"
+#include "chain/replicates.h"
 
 namespace keyhole {
 

@@ -124,8 +124,9 @@ std::vector<MixField> make_fields() {
             [](auto& m) -> auto& { return m.bootstrap_samples; }),
         field(
             "bootstrap",
-            P::number("most-starts", 1, 1e-6, 1,
-                      "largest share of the chains that start from one path; below 1 less noise and a bias of the start"),
+            P::number(
+                "most-starts", 1, 1e-6, 1,
+                "largest share of the chains that start from one path; below 1 less noise and a bias of the start"),
             [](auto& m) -> auto& { return m.most_starts; }),
     };
 }

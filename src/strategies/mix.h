@@ -47,7 +47,8 @@ struct Mix {
     std::int64_t chain_length = 0;  // mutations of each chain, where the render is given neither a time nor a number
     std::int64_t bootstrap_samples = 0;
     double most_starts = 1;  // largest share of the chains that start from one of them
-    // Whether the render first finds out which of the strategies to use, how often, and with which sizes (render/race.h).
+    // Whether the render first finds out which of the strategies to use, how often, and with which sizes
+    // (render/race.h).
     enum class Tuning { off, race } tuning = Tuning::off;
     std::vector<MixStrategy> strategies;
 

@@ -11,8 +11,8 @@
 namespace keyhole {
 namespace {
 
-// Samples find nothing in the first state, weights of about 10 in the next four, and once in 10^5 one of 10^6, which has
-// half of b.
+// Samples find nothing in the first state, weights of about 10 in the next four, and once in 10^5 one of 10^6, which
+// has half of b.
 constexpr double rare = 1e-5;
 constexpr std::array<double, 6> density = {0.4, 0.15, 0.15, 0.15, 0.15 - rare, rare};
 constexpr std::array<double, 6> target = {0, 1, 2, 3, 4, 10};
