@@ -62,8 +62,8 @@ TEST(Normalization, MergesToTheSame) {
 
 // Of 10^4 samples one is the heavy one in one run of ten: the mean of the weights has half of b in the others and five
 // times as much in that one. The bridge knows b from the states. With a = 0.001 of the heavy state and 0.97 to 1 of the
-// others, the mean of a over 10^4 states has a relative standard deviation of 0.01, and that of w a over the samples one
-// of 0.01, to which each heavy one adds 0.01: 0.1 is seven standard deviations, a false alarm of 1e-9 in 100 runs.
+// others, the mean of a over 10^4 states has a relative standard deviation of 0.01, and that of w a over the samples
+// one of 0.01, to which each heavy one adds 0.01: 0.1 is seven standard deviations, a false alarm of 1e-9 in 100 runs.
 TEST(Normalization, KnowsWhatSamplesHaveNotFound) {
     constexpr int n = 10000;
     int mean_near = 0, heavy = 0;
