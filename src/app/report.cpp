@@ -70,6 +70,7 @@ Json errors_json(const ErrorStatistics& e) {
             {"disagreeing_light", e.disagreeing_light < 0 ? Json() : Json(e.disagreeing_light)},
             {"b_effective_paths", e.effective_paths},
             {"b_largest_share", e.heaviest_share},
+            {"moved_starts", e.moved_starts},
             {"blocks", {{"columns", 16}, {"rows", 16}, {"mean", e.block_means}, {"standard_error", e.block_errors}}}};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -59,6 +60,15 @@ inline std::vector<double> bounded_shares(std::span<const double> weights, doubl
     std::vector<double> bounded(weights.begin(), weights.end());
     for (double& w : bounded) w = std::min(w, level);
     return bounded;
+}
+
+// Total variation distance of two sets of shares, in [0, 1]: how much of the one is elsewhere in the other. Neither has
+// to be normalised; 0 if all of one are zero.
+inline double moved_share(std::span<const double> from, std::span<const double> to) {
+    const double a = std::accumulate(from.begin(), from.end(), 0.0), b = std::accumulate(to.begin(), to.end(), 0.0);
+    double moved = 0;
+    for (std::size_t i = 0; i < from.size() && a > 0 && b > 0; ++i) moved += std::abs(from[i] / a - to[i] / b) / 2;
+    return moved;
 }
 
 }  // namespace keyhole

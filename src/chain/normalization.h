@@ -39,6 +39,17 @@ struct Normalization {
     double b() const { return visited.count() ? bridged.mean() / visited.mean() : weights.mean(); }
 };
 
+// How many samples of equal weight would know the sum of several b as well: (sum of b)^2 / sum of E[w^2] / n.
+inline double effective_samples(std::span<const RunningMean> weights) {
+    double sum = 0, squares = 0;
+    for (const RunningMean& w : weights) {
+        const double n = static_cast<double>(w.count()), mean = w.mean();
+        sum += mean;
+        squares += (w.variance() * (n - 1) / n + mean * mean) / n;
+    }
+    return sum * sum / squares;
+}
+
 // The function by which no sample counts as more than about `most` times the mean of all. It is near 1 for all where
 // none comes near that: then b is the mean of the samples, and the chain's noise does not enter.
 inline BridgeFunction bridge_for(std::span<const double> weights, double most) {

@@ -141,7 +141,9 @@ Bootstrap run_bootstrap(const Scene& scene, const CoordinateLayout& layout, Tech
         std::vector<double> own = weights;
         for (std::size_t i = 0; i < own.size(); ++i)
             if (lengths[i] != group.length) own[i] = 0;
-        for (const std::size_t i : resample(bounded_shares(own, mix.most_starts), counts[g], rng.uniform())) {
+        const std::vector<double> bounded = bounded_shares(own, mix.most_starts);
+        group.moved_starts = moved_share(own, bounded);
+        for (const std::size_t i : resample(bounded, counts[g], rng.uniform())) {
             draw(worker, i);
             const auto replicate = static_cast<std::uint32_t>(replicate_of(i, own.size(), replicates));
             group.seeds.push_back({worker.state, replicate});

@@ -43,7 +43,8 @@ struct ChainGroup {
     BridgeFunction bridge;
     std::vector<Normalization> b;  // by replicate: integral of f* over raster area, of these paths
     Largest<heaviest> largest;     // of the samples' weights
-    std::vector<ChainSeed> seeds;  // one per chain, in proportion to the target
+    std::vector<ChainSeed> seeds;  // one per chain, in proportion to the target but for those that are moved
+    double moved_starts = 0;       // share of them (Mix::most_starts)
 
     Normalization all() const;  // of all replicates
 };

@@ -158,10 +158,12 @@ void ChainRun::report_b(RenderStatistics& statistics) const {
         const auto chains = static_cast<std::uint64_t>(chains_of(g));
         const LengthStatistics s{groups_[g].length, chains, errors.b(g) / area, errors.error_of_b(g) / area};
         statistics.b += s.b;
+        statistics.errors.moved_starts += groups_[g].moved_starts * s.b;
         variance += s.b_standard_error * s.b_standard_error;
         if (s.length > 0) statistics.lengths.push_back(s);
     }
     statistics.b_standard_error = std::sqrt(variance);
+    statistics.errors.moved_starts /= statistics.b;
 }
 
 ReplicateRecord ChainRun::record() const {

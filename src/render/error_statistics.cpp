@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace keyhole {
 namespace {
 
@@ -10,6 +12,7 @@ namespace {
 constexpr double fewest_effective_paths = 100;
 constexpr double most_of_heaviest = 0.2;  // of the light, by the five largest samples
 constexpr double most_disagreeing = 0.2;  // of the light
+constexpr double most_moved = 0.05;       // of the light, that the chains have not had the time to forget
 
 std::vector<float> block_means(const ReplicateRecord& record, const ReplicateErrors& errors, std::size_t g,
                                std::size_t r) {
@@ -104,17 +107,15 @@ double report_mixing(const ReplicateRecord& record, RenderStatistics& statistics
 // How much of the light the independent samples of largest weight carry, and how many of equal weight would know its
 // amount as well.
 void report_heavy_paths(const ReplicateRecord& record, ErrorStatistics& result) {
-    double sum = 0, squares = 0;
+    double sum = 0;
+    std::vector<RunningMean> weights(record.b.size());
     Largest<heaviest> largest;
     for (std::size_t g = 0; g < record.b.size(); ++g) {
-        RunningMean weights;
-        for (const Normalization& replicate : record.b[g]) weights.merge(replicate.weights);
-        const double n = static_cast<double>(weights.count()), mean = weights.mean();
-        sum += mean;
-        squares += (weights.variance() * (n - 1) / n + mean * mean) / n;
-        for (const double w : record.largest[g].values()) largest.add(w / n);
+        for (const Normalization& replicate : record.b[g]) weights[g].merge(replicate.weights);
+        sum += weights[g].mean();
+        for (const double w : record.largest[g].values()) largest.add(w / static_cast<double>(weights[g].count()));
     }
-    result.effective_paths = sum * sum / squares;
+    result.effective_paths = effective_samples(weights);
     for (const double w : largest.values()) result.heaviest_share += w / sum;
 }
 
@@ -141,6 +142,19 @@ void warn_of_disagreement(RenderStatistics& statistics) {
         100 * e.disagreeing_light));
 }
 
+// What the starts put in the wrong place decays, so its share in a chain's mean is about its autocorrelation time over
+// its length.
+void warn_of_moved_starts(RenderStatistics& statistics) {
+    const ErrorStatistics& e = statistics.errors;
+    const double length = static_cast<double>(statistics.rounds), time = e.position.autocorrelation_time;
+    if (e.moved_starts * std::min(1.0, time / length) <= most_moved) return;
+    statistics.warnings.push_back(fmt::format(
+        "biased by its starts: {:.0f}% of the chains start from other paths than the light is in "
+        "(bootstrap.most-starts), and each is about {:.2g} autocorrelation times long, so light that is hard to find "
+        "may be too dark. Render longer, or without that bias, noisier (--set bootstrap.most-starts=1)",
+        100 * e.moved_starts, length / time));
+}
+
 }  // namespace
 
 void report_errors(const ReplicateRecord& record, const BlockRecord& over_time, RenderStatistics& statistics) {
@@ -152,6 +166,7 @@ void report_errors(const ReplicateRecord& record, const BlockRecord& over_time, 
     errors.disagreeing_light = over_time.disagreeing_light(memory);
     warn_of_heavy_paths(statistics);
     warn_of_disagreement(statistics);
+    warn_of_moved_starts(statistics);
 }
 
 }  // namespace keyhole

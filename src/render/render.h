@@ -103,6 +103,7 @@ struct ErrorStatistics {
     // Of all independent samples: how many of equal weight would have as small an error of their mean, and what share
     // of their sum the five largest have.
     double effective_paths = 0, heaviest_share = 0;
+    double moved_starts = 0;  // share of the light whose chains start elsewhere (Mix::most_starts): a bias of the start
 };
 
 // What Mix::Tuning::race saw: the winner of the sets and the others, from the best on, then the same of its neighbours.

@@ -82,6 +82,26 @@ TEST_F(Trust, ARareStrongPathThatTheMixCannotReachInTimeIsFound) {
     EXPECT_GE(said, 9) << "of " << runs;
 }
 
+TEST_F(Trust, ABiasOfTheStartsIsNamed) {
+    const auto errors_with = [&](const std::string& most, const std::string& strength) {
+        const Finished done = run({"render", "lantern.xml", "-D", "strength=" + strength, "--mix", "mmlt", "-o",
+                                   "a.exr", "-n", "100", "--set", "bootstrap.most-starts=" + most, "-q"});
+        EXPECT_EQ(done.exit_code, 0);
+        return std::pair(done.err, json("a.json")["statistics"]["errors"]["moved_starts"].get<double>());
+    };
+    const auto [bounded_says, bounded] = errors_with("0.01", "3e6");
+    EXPECT_THAT(bounded_says, HasSubstr("biased by its starts"));
+    EXPECT_GT(bounded, 0.1);
+    EXPECT_LT(bounded, 1);
+    const auto [says, moved] = errors_with("1", "3e6");
+    EXPECT_THAT(says, Not(HasSubstr("biased by its starts")));
+    EXPECT_EQ(moved, 0);
+    // No path is heavier than the share where light is found easily.
+    const auto [healthy_says, of_healthy] = errors_with("0.01", "0");
+    EXPECT_EQ(healthy_says, "");
+    EXPECT_EQ(of_healthy, 0);
+}
+
 TEST_F(Trust, HealthyRendersAreNotWarnedAbout) {
     for (const std::string mutations : {"16", "300", "3000"})
         for (int seed = 1; seed <= 4; ++seed) {

@@ -84,6 +84,16 @@ TEST(BoundedShares, CutTheLargestToTheShare) {
     EXPECT_EQ(bounded_shares(std::vector<double>{4, 0, 2, 9}, 0.3), (std::vector<double>{2, 0, 2, 2}));
 }
 
+TEST(MovedShare, IsWhatIsElsewhere) {
+    const std::vector<double> from = {1, 0, 2, 9}, to = {1, 0, 2, 3};
+    // 1/12, 2/12, 9/12 and 1/6, 2/6, 3/6.
+    EXPECT_NEAR(moved_share(from, to), 0.25, 1e-15);
+    EXPECT_NEAR(moved_share(to, from), 0.25, 1e-15);
+    EXPECT_EQ(moved_share(from, from), 0);
+    EXPECT_NEAR(moved_share(std::vector<double>{1, 0}, std::vector<double>{0, 5}), 1, 1e-15);
+    EXPECT_EQ(moved_share(std::vector<double>{0, 0}, std::vector<double>{0, 0}), 0);
+}
+
 TEST(BoundedShares, LeaveTheOthersAsTheyAre) {
     Rng random(4, 0);
     for (int trial = 0; trial < 200; ++trial) {
