@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "chain/running_mean.h"
+
 namespace keyhole {
 namespace {
 
@@ -68,6 +70,23 @@ double squared_error(const std::vector<Cells>& replicates, const Cells& all) {
         error += square / (n * (n - 1)) / (expected * expected + mean * mean);
     }
     return error / count;
+}
+
+double error_of_log_ratio(const std::vector<Cells>& a, const std::vector<Cells>& b, const Cells& all) {
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    if (a.size() != b.size() || a.size() < 3) return unknown;
+    const auto without = [](std::vector<Cells> replicates, std::size_t r) {
+        replicates.erase(replicates.begin() + static_cast<std::ptrdiff_t>(r));
+        return replicates;
+    };
+    RunningMean ratios;
+    for (std::size_t r = 0; r < a.size(); ++r) {
+        const double ratio = std::log(squared_error(without(a, r), all) / squared_error(without(b, r), all));
+        if (!std::isfinite(ratio)) return unknown;
+        ratios.add(ratio);
+    }
+    const auto n = static_cast<double>(a.size());
+    return std::sqrt(ratios.variance() / n) * (n - 1);
 }
 
 }  // namespace keyhole

@@ -23,4 +23,8 @@ Cells mean_of(const std::vector<std::vector<Cells>>& runs);
 // seem to err there. Infinite for fewer than two replicates, or if all is dark.
 double squared_error(const std::vector<Cells>& replicates, const Cells& all);
 
+// Standard error of log(squared_error(a) / squared_error(b)), by the jackknife over replicates, of which both have as
+// many. Infinite for fewer than three, or where one without a replicate has no error.
+double error_of_log_ratio(const std::vector<Cells>& a, const std::vector<Cells>& b, const Cells& all);
+
 }  // namespace keyhole

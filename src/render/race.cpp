@@ -19,14 +19,25 @@ constexpr double share_of_short = 0.05, share_of_long = 0.01;
 constexpr double share_of_sets = 0.6;        // of the race; the rest is for the winner's weights and sizes
 constexpr int chains_of_contender = 64;      // few, so that each is long enough to show how it mixes
 constexpr double fewest_mutations = 8192;    // of a contender in its first round, for a comparison to mean something
-constexpr double worth_a_set = 1.1;          // more efficient than the fallback; less may be chance
+constexpr double sure = 2;                   // standard errors that one must be more efficient by than another
+constexpr double worth_a_set = 1.1;          // times as efficient as the fallback, and that surely
 constexpr double worth_a_change = 1.3;       // the same of a change of the winner: there are many to choose from
 constexpr double largest_known_error = 0.5;  // of blocks, relative; what is seen with a larger one is mostly chance
 constexpr std::uint64_t mutations_of_pass = 64;  // of each chain
 constexpr int most_fine = 4;                     // cells of a block, a side
 
-// What a race without a clear result ends with: the set that is far behind the best in no scene (docs/benchmarks.md).
-const std::string fallback = "fused-portal";
+// Whether independent samples find the light: that many of them are worth one of equal weight.
+constexpr double most_of_easy = 128;
+
+bool light_is_easy_to_find(const Bootstrap& bootstrap) {
+    std::vector<RunningMean> weights;
+    double samples = 0;
+    for (const ChainGroup& g : bootstrap.groups) {
+        weights.push_back(g.all().weights);
+        samples += static_cast<double>(weights.back().count());
+    }
+    return effective_samples(weights) * most_of_easy > samples;
+}
 
 // The chains of a part of the seeds, in order: they are in proportion to the target as all are.
 Bootstrap part_of(const Bootstrap& bootstrap, int chains) {
@@ -90,8 +101,9 @@ class Contender {
     ReplicateRecord record() const { return run_->record(); }
     double mutations() const { return mutations_; }
     double seconds() const { return seconds_; }
-    double error = 0;        // mean squared relative error of the cells
-    double block_error = 0;  // of the blocks
+    double error = 0;          // mean squared relative error of the cells
+    double block_error = 0;    // of the blocks
+    std::vector<Cells> cells;  // by replicate
     bool known() const { return block_error < largest_known_error * largest_known_error; }
 
   private:
@@ -162,6 +174,7 @@ class Race {
         for (std::size_t c = 0; c < field.size(); ++c) {
             field[c]->error = squared_error(cells[c], all_cells);
             field[c]->block_error = squared_error(blocks[c], all_blocks);
+            field[c]->cells = std::move(cells[c]);
         }
         std::stable_sort(field.begin(), field.end(),
                          [&](const auto& a, const auto& b) { return a->cost(length_) < b->cost(length_); });
@@ -187,14 +200,17 @@ void report(const std::vector<std::unique_ptr<Contender>>& field, TuningStatisti
 }
 
 // The first of the field, if it is known to be better by the factor than the one of that name, where that is there.
+// The two have raced to the end.
 const Contender& better(const std::vector<std::unique_ptr<Contender>>& field, const std::string& than, double factor,
                         const RaceLength& length) {
     const Contender& first = *field.front();
     const auto found = std::find_if(field.begin(), field.end(), [&](const auto& c) { return c->name() == than; });
     if (found == field.end()) return first;
     const Contender& other = **found;
-    const bool is_better = first.known() && first.cost(length) * factor < other.cost(length);
-    return is_better ? first : other;
+    if (&other == &first || !first.known()) return other;
+    const double gain = std::log(other.cost(length) / first.cost(length));
+    const double error = error_of_log_ratio(first.cells, other.cells, mean_of({first.cells, other.cells}));
+    return gain > std::log(factor) && gain > sure * error ? first : other;
 }
 
 }  // namespace
@@ -214,8 +230,9 @@ RaceResult race(const Scene& scene, const RenderSettings& settings, const Coordi
     const Bootstrap seeds = part_of(bootstrap, chains_of_contender);
     Race race(scene, settings, layout, techniques, seeds, length, stop);
     RaceResult result;
-    std::vector<MixVariant> all =
-        sets_of(settings.mix, [&](const MixStrategy& s) { return applies(s, scene, settings.mix, seeds); });
+    std::vector<MixVariant> all = sets_of(settings.mix, light_is_easy_to_find(bootstrap),
+                                          [&](const MixStrategy& s) { return applies(s, scene, settings.mix, seeds); });
+    const std::string fallback = all.front().name;  // of a race without a clear result
     if (all.size() == 1) {
         result.statistics.winner = all.front().name;
         result.mix = std::move(all.front().mix);
