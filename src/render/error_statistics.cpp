@@ -143,16 +143,18 @@ void warn_of_disagreement(RenderStatistics& statistics) {
 }
 
 // What the starts put in the wrong place decays, so its share in a chain's mean is about its autocorrelation time over
-// its length.
+// its length, and the whole where that time is not known: the chains are too short, then.
 void warn_of_moved_starts(RenderStatistics& statistics) {
     const ErrorStatistics& e = statistics.errors;
-    const double length = static_cast<double>(statistics.rounds), time = e.position.autocorrelation_time;
-    if (e.moved_starts * std::min(1.0, time / length) <= most_moved) return;
+    const double times = static_cast<double>(statistics.rounds) / e.position.autocorrelation_time;
+    if (e.moved_starts / std::max(1.0, times) <= most_moved) return;
+    const std::string length = times > 0 ? fmt::format("each is about {:.2g} autocorrelation times long", times)
+                                         : "they are too short to forget it";
     statistics.warnings.push_back(fmt::format(
         "biased by its starts: {:.0f}% of the chains start from other paths than the light is in "
-        "(bootstrap.most-starts), and each is about {:.2g} autocorrelation times long, so light that is hard to find "
-        "may be too dark. Render longer, or without that bias, noisier (--set bootstrap.most-starts=1)",
-        100 * e.moved_starts, length / time));
+        "(bootstrap.most-starts), and {}, so light that is hard to find may be too dark. Render longer, or without "
+        "that bias, noisier (--set bootstrap.most-starts=1)",
+        100 * e.moved_starts, length));
 }
 
 }  // namespace
