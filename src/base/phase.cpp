@@ -16,8 +16,9 @@ struct Threads {
     std::vector<const std::atomic<Phase>*> phases;
 };
 
+// Never destroyed, as TBB's threads may end after all that is static.
 Threads& threads() {
-    static Threads all;
+    static Threads& all = *new Threads;
     return all;
 }
 

@@ -39,7 +39,8 @@ class RenderCommandIntegrator : public RenderCommand, public testing::WithParamI
 TEST_P(RenderCommandIntegrator, WritesImagesAndReport) {
     const std::string integrator = GetParam();
     std::vector<std::string> more = {"--integrator", integrator, "-o", "a.exr", "-o", "a.png"};
-    if (integrator == "mmlt") more.insert(more.end(), {"--set", "bootstrap.most-starts=1"});  // else the run is too short
+    if (integrator == "mmlt")
+        more.insert(more.end(), {"--set", "bootstrap.most-starts=1"});  // else the run is too short
     const Finished done = run(quick_render("room.xml", more));
     ASSERT_EQ(done.exit_code, 0) << done.err;
     std::vector<std::string> expected = {"a.exr", "a.json", "a.png", "room.xml"};

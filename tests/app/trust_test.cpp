@@ -84,9 +84,9 @@ TEST_F(Trust, ARareStrongPathThatTheMixCannotReachInTimeIsFound) {
 
 TEST_F(Trust, ABiasOfTheStartsIsNamed) {
     const auto errors_with = [&](const std::string& most, const std::string& strength) {
-        const Finished done = run({"render", "lantern.xml", "-D", "strength=" + strength, "--mix", "mmlt", "-o",
-                                   "a.exr", "-n", "100", "--bootstrap", "16384", "--set",
-                                   "bootstrap.most-starts=" + most, "-q"});
+        const Finished done =
+            run({"render", "lantern.xml", "-D", "strength=" + strength, "--mix", "mmlt", "-o", "a.exr", "-n", "100",
+                 "--bootstrap", "16384", "--set", "bootstrap.most-starts=" + most, "-q"});
         EXPECT_EQ(done.exit_code, 0);
         return std::pair(done.err, json("a.json")["statistics"]["errors"]["moved_starts"].get<double>());
     };
