@@ -15,6 +15,7 @@
 #include "compare/metrics.h"
 #include "compare/speed_up.h"
 #include "compare/tradeoff.h"
+#include "compare/warnings.h"
 
 namespace keyhole {
 namespace {
@@ -155,19 +156,6 @@ json time_split_json(const EntryRuns& entry) {
     return split;
 }
 
-// Each warning once, with the number of runs that gave it.
-json warnings_json(const EntryRuns& entry) {
-    std::map<std::string, int> counts;
-    for (const RunRecord& record : entry.records)
-        for (const std::string& warning : record.statistics.warnings) ++counts[warning];
-    json warnings = json::array();
-    for (const auto& [warning, count] : counts)
-        warnings.push_back(entry.records.size() == 1
-                               ? warning
-                               : fmt::format("{} ({} of {} runs)", warning, count, entry.records.size()));
-    return warnings;
-}
-
 json entry_head(const ComparedEntry& entry, int runs) {
     const bool mix = entry.integrator == Integrator::mmlt;
     json j = {{"name", entry.name}, {"kind", mix ? "mix" : "integrator"}, {"runs", runs}};
@@ -281,7 +269,7 @@ json make_results(const Scene& scene, const ComparisonPlan& plan, const Referenc
             j["mutations_per_second"] =
                 to_json(estimate_mean(collect(entry, [](const RunRecord& r) { return r.mutations_per_second; })));
             j["time_split"] = time_split_json(entry);
-            j["warnings"] = warnings_json(entry);
+            j["warnings"] = warnings_of(entry.records);
             const Converging c = converging(j, point, plan.equal, own_relmse);
             smallest = std::min(smallest, c.curve.back().relmse);
             if (e == 0)

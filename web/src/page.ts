@@ -27,11 +27,14 @@ function header(results: Results): HTMLElement {
                 html("h1", {}, scene.name ?? scene.file ?? "Unnamed scene"), html("p", {class: "facts"}, facts.join("  ·  ")));
 }
 
+// Those of entries, of which there can be many, are folded.
 function warnings(results: Results): HTMLElement | null {
-    const all = [...(results.warnings ?? []),
-                 ...(results.entries ?? []).flatMap((e) => (e.warnings ?? []).map((text) => `${e.name}: ${text}`))];
-    return all.length ? html("aside", {class: "warnings", "aria-label": "Warnings"},
-                             html("ul", {}, ...all.map((text) => html("li", {}, text)))) : null;
+    const list = (texts: string[]) => (texts.length ? html("ul", {}, ...texts.map((text) => html("li", {}, text))) : null);
+    const warned = (results.entries ?? []).filter((e) => e.warnings?.length), whole = results.warnings ?? [];
+    if (!whole.length && !warned.length) return null;
+    return html("aside", {class: "warnings", "aria-label": "Warnings"}, list(whole), warned.length ? html("details", {},
+        html("summary", {}, `Warnings of ${warned.map((e) => e.name).join(", ")}`),
+        list(warned.flatMap((e) => (e.warnings ?? []).map((text) => `${e.name}: ${text}`)))) : null);
 }
 
 function mixes_section({entries = []}: Results): HTMLElement | null {

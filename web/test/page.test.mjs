@@ -190,7 +190,11 @@ test("plots and tables show every entry, and names are text", () => on_page("sma
     assert.match(await page.locator(".plot svg").getAttribute("aria-label"), /^Squared bias against Mutations/);
     await page.locator(".series-list input").first().uncheck();
     assert.equal(await page.locator(".plot svg .series").count(), 2);
-    assert.match(await page.locator(".warnings").textContent(), /groups of chains disagree/);
+    const folded = page.locator(".warnings details li");
+    assert.equal(await folded.isVisible(), false);
+    await page.locator(".warnings summary").click();
+    assert.equal(await folded.isVisible(), true);
+    assert.match(await folded.textContent(), /groups of chains disagree/);
 }));
 
 test("everything can be reached and has a name", () => on_page("small.html", {}, async (page) => {
